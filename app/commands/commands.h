@@ -160,9 +160,10 @@ struct WrittenReport {
 WrittenReport make_report(const ReportRequest& request, const std::stop_token& stop = {});
 
 /// Writes the tables and figures of a finished experiment into its folder. `figure_width`: of a
-/// print, "85mm". Returns the rows. Throws InputError.
+/// print, "85mm"; `bare_figures`: without titles and notes. Returns the rows. Throws InputError.
 std::vector<Row> write_evaluation(const std::filesystem::path& folder,
                                   const Experiment& experiment,
-                                  const std::optional<std::string>& figure_width = {});
+                                  const std::optional<std::string>& figure_width = {},
+                                  bool bare_figures = false);
 
 }  // namespace gpo

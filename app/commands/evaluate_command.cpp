@@ -4,8 +4,9 @@
 #include "app/recordings/recordings.h"
 #include "app/terminal/terminal.h"
 #include "engine/base/error.h"
+#include "engine/experiment/recording_tables.h"
 #include "engine/experiment/runner.h"
-#include "engine/experiment/summary.h"
+#include "engine/files/csv_table.h"
 #include "engine/files/output_file.h"
 #include "engine/files/text_file.h"
 #include "ui/views/charts/charts.h"
@@ -31,6 +32,7 @@ struct EvaluateArguments {
   std::size_t cache_mib = FrameCache::kDefaultByteLimit >> 20;
   std::uint64_t seed = 1;
   std::optional<std::string> shard, figure_width;
+  bool bare_figures = false;
   fs::path output;
 };
 
@@ -105,11 +107,29 @@ void write_figure(const fs::path& folder,
   write_file(folder / (figure.name + ".pdf"), figure_pdf(figure, sheet));
 }
 
+/// Returns the table of a finished run; empty if it has none.
+std::string time_offsets_markdown(const fs::path& file) {
+  if (!fs::exists(file)) return "";
+  Table table{.caption =
+                  "Time offsets of other programs' results, recording minus result, estimated "
+                  "from rotations; those that are not applied affect the errors",
+              .header = {},
+              .lines = {}};
+  read_quoted_csv(file, [&](int, const std::vector<std::string>& cells) {
+    if (table.header.empty())
+      table.header = cells;
+    else if (cells.size() == table.header.size())
+      table.lines.push_back(cells);
+  });
+  return "\n" + to_markdown(table);
+}
+
 void write_results(const EvaluateArguments& arguments, const Experiment& experiment) {
-  const auto rows = write_evaluation(arguments.output, experiment, arguments.figure_width);
+  const auto rows = write_evaluation(
+      arguments.output, experiment, arguments.figure_width, arguments.bare_figures);
   fmt::print("{}", to_text(overview_table(rows)));
   fmt::print(
-      "{}: {} x {} in results.csv; summary.json, errors.md, "
+      "{}: {} x {} in results.csv; summary.json, errors.md, errors_by_recording.tex, "
       "running_time.md, figures\n",
       arguments.output.string(),
       counted(rows.size() / experiment.configurations.size(), "window"),
@@ -175,22 +195,34 @@ int evaluate(const EvaluateArguments& arguments, const MethodTable& methods) {
 
 std::vector<Row> write_evaluation(const fs::path& folder,
                                   const Experiment& experiment,
-                                  const std::optional<std::string>& figure_width) {
+                                  const std::optional<std::string>& figure_width,
+                                  bool bare_figures) {
   const std::optional<double> width_mm = parse_width(figure_width);
   std::vector<Row> rows = collect_rows(experiment, std::span(&folder, 1));
   if (rows.empty()) throw InputError(fmt::format("{}: no window was evaluated", folder.string()));
   const Table times = running_time_table(rows);
   write_file(folder / "results.csv", to_csv(rows));
   write_file(folder / "summary.json", json_text(to_json(experiment, rows), 1));
-  write_file(folder / "errors.md", to_markdown(overview_table(rows)));
+  write_file(folder / "errors.md",
+             to_markdown(overview_table(rows)) + recordings_markdown(rows) +
+                 time_offsets_markdown(folder / "time_offsets.csv"));
   write_file(folder / "errors.csv", to_csv(overview_numbers(rows)));
+  write_file(folder / "errors_by_recording.csv", recordings_csv(rows));
+  write_file(folder / "errors_by_recording.tex", recordings_latex(rows));
   write_file(folder / "running_time.md", to_markdown(times));
   write_file(folder / "running_time.csv", to_csv(times));
-  make_folder(folder / "figures");
-  for (const Figure& figure : figures(rows, experiment.configurations)) {
-    check_stop();
-    write_figure(folder / "figures", figure, width_mm);
-  }
+  const auto write_all = [&](const fs::path& to, std::vector<Figure> all) {
+    make_folder(to);
+    for (Figure& figure : all) {
+      check_stop();
+      if (bare_figures) figure.title = figure.note = "";
+      write_figure(to, figure, width_mm);
+    }
+  };
+  write_all(folder / "figures", figures(rows, experiment.configurations));
+  if (experiment.recordings.size() > 1)
+    write_all(folder / "figures" / "by_recording",
+              recording_figures(rows, experiment.configurations));
   return rows;
 }
 
@@ -240,6 +272,9 @@ RunCommand add_evaluate(CLI::App& app) {
   command.add_option("--figure-width",
                      to->figure_width,
                      "Print width of the figures, e.g. 85mm or 175mm; text is at least 7 pt");
+  command.add_flag("--bare-figures",
+                   to->bare_figures,
+                   "Leaves out the title and the note of the figures, for a caption in print");
   command.add_option("--output", to->output, "Folder to write")->required();
   return [to](OwnMethods& own, Interrupt& /*interrupt*/) {
     own.add_shards(to->merge);

@@ -95,8 +95,10 @@ void add_method_commands(CLI::App& command, MethodArguments& arguments) {
       .add_option("--result",
                   arguments.specs.results,
                   "Adds another program's result as a method, "
-                  "NAME=FILE[,POINTS][,frame=camera|body]: a trajectory (TUM, EuRoC, KITTI, "
-                  "ORB-SLAM3, VINS-Mono) or a COLMAP model (engine/results/README.md)")
+                  "NAME=FILE[,POINTS][,frame=camera|body][,scale=metric|free]"
+                  "[,offset=auto|SECONDS]: a trajectory (TUM, EuRoC, KITTI, ORB-SLAM3, VINS-Mono) "
+                  "or a COLMAP model; {recording} in FILE stands for the recording's name "
+                  "(engine/results/README.md)")
       ->allow_extra_args(false)
       ->type_name("NAME=FILE");
   command.add_flag(
@@ -154,6 +156,7 @@ void OwnMethods::add_shards(const std::vector<fs::path>& folders) {
     }
   }
   for (const auto& [name, identity] : found) {
+    if (name.find('/') != std::string::npos) continue;  // files for one recording
     const auto fail = [name](const Window&, const Sources&, const Watch&) {
       return failed(name + ": known only from shards, which do not contain its command");
     };

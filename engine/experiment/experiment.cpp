@@ -6,6 +6,7 @@
 #include "engine/experiment/program_identity.h"
 #include "engine/files/refuse.h"
 #include "engine/files/text_file.h"
+#include "engine/methods/recording_method.h"
 
 #include <algorithm>
 #include <climits>
@@ -117,6 +118,27 @@ std::optional<Range> parse_range(const std::string& text) {
   return Range{*first, last, *step};
 }
 
+/// Adds the identities of results with a file for each recording, as "METHOD/RECORDING".
+void add_results(Experiment& experiment) {
+  for (const Configuration& one : experiment.configurations) {
+    const Method& row = one.method.row();
+    const RecordingMethod* method = recording_method(row);
+    if (method == nullptr || !method->identity_for) continue;
+    bool found = false;
+    for (const ExperimentRecording& recording : experiment.recordings) {
+      const auto identity = method->identity_for(recording.name);
+      found = found || identity;
+      experiment.commands[row.key + "/" + recording.name] = identity.value_or("");
+    }
+    if (!found && !experiment.recordings.empty())
+      throw InputError(
+          fmt::format("--result {}: found no file for any recording, expected one with {} in place "
+                      "of {{recording}}",
+                      row.result,
+                      experiment.recordings.front().name));
+  }
+}
+
 }  // namespace
 
 std::string program_identity() {
@@ -130,31 +152,6 @@ MethodTable methods_of(const Experiment& experiment) {
   MethodTable methods;
   for (const Configuration& one : experiment.configurations) methods.add(one.method);
   return methods;
-}
-
-ExperimentDifferences differences(const Experiment& a, const Experiment& b) {
-  ExperimentDifferences found;
-  if (a.configurations != b.configurations) found.plan.emplace_back("methods");
-  if (a.lengths != b.lengths) found.plan.emplace_back("lengths");
-  if (a.seed != b.seed) found.plan.emplace_back("seed");
-  if (a.program != b.program) found.content.emplace_back("build of the program");
-  if (a.commands != b.commands) found.content.emplace_back("command or files of a method");
-  constexpr auto kName = &ExperimentRecording::name;
-  if (!std::ranges::equal(a.recordings, b.recordings, {}, kName, kName)) {
-    found.plan.emplace_back("recordings");
-    return found;
-  }
-  bool other_starts = false;
-  for (std::size_t i = 0; i < a.recordings.size(); ++i) {
-    const ExperimentRecording &one = a.recordings[i], &other = b.recordings[i];
-    const auto parts = differing_parts(one.content, other.content);
-    for (const std::string& part : parts)
-      found.content.push_back(fmt::format("{} of {}", part, one.name));
-    // `end` depends on lengths and frames: if these differ, so do the starts.
-    other_starts = other_starts || (parts.empty() && one.starts != other.starts);
-  }
-  if (other_starts && a.lengths == b.lengths) found.plan.emplace_back("starts");
-  return found;
 }
 
 std::string differ_text(const std::vector<std::string>& names) {
@@ -181,6 +178,7 @@ Experiment plan_experiment(std::span<const std::shared_ptr<const Recording>> rec
   for (const auto& recording : recordings)
     experiment.recordings.push_back(plan_recording(*recording, experiment.lengths, request.starts));
   check_names(experiment.recordings);
+  add_results(experiment);
   if (tasks_of(experiment).empty())
     refuse_setting("lengths",
                    "no window fits from these starts, {}",
@@ -192,6 +190,11 @@ Experiment plan_experiment(std::span<const std::shared_ptr<const Recording>> rec
 std::vector<std::string> notes_of(const Experiment& experiment) {
   std::vector<std::string> notes;
   for (const ExperimentRecording& recording : experiment.recordings) {
+    for (const auto& [method, identity] : experiment.commands)
+      if (identity.empty() && method.ends_with("/" + recording.name))
+        notes.push_back(fmt::format("{}: {} has no file for it, so its windows count as failed",
+                                    recording.name,
+                                    method.substr(0, method.find('/'))));
     const auto first_long = std::ranges::upper_bound(experiment.lengths, recording.frames);
     if (first_long == experiment.lengths.end()) continue;
     notes.push_back(fmt::format("{}: {}, too short for windows of {} frames",

@@ -5,6 +5,7 @@
 #include "engine/methods/methods.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include <fmt/format.h>
@@ -67,6 +68,12 @@ Curve curve_of(const std::vector<Cell>& cells,
   return curve;
 }
 
+/// Returns whether anything of the curve can be drawn.
+bool has_points(const Curve& curve, bool logarithmic) {
+  return std::ranges::any_of(curve.y,
+                             [&](double y) { return std::isfinite(y) && (y > 0 || !logarithmic); });
+}
+
 Curve bound_curve(const std::vector<Cell>& cells, const Configuration& configuration) {
   Curve curve = curve_of(cells, key_of(configuration), kBoundColumn, 1);
   curve.name = fmt::format("bound for {}'s tracks", title_of(configuration));
@@ -85,14 +92,15 @@ Chart chart_of(const std::vector<Cell>& cells, const FigurePlan& plan, const Axi
               .logarithmic = axis.logarithmic};
   for (const Configuration& configuration : plan.configurations) {
     Curve curve = curve_of(cells, key_of(configuration), axis.column, axis.factor);
-    if (curve.x.empty()) continue;
+    if (!has_points(curve, axis.logarithmic)) continue;
     curve.name = title_of(configuration);
     curve.rgb = color_of(configuration);
     curve.marker = marker_of(configuration);
     chart.curves.push_back(std::move(curve));
   }
-  if (axis.column == std::string("pne_deg"))
-    chart.curves.push_back(bound_curve(cells, plan.configurations.front()));
+  if (axis.column != std::string("pne_deg")) return chart;
+  Curve bound = bound_curve(cells, plan.configurations.front());
+  if (has_points(bound, axis.logarithmic)) chart.curves.push_back(std::move(bound));
   return chart;
 }
 
@@ -116,6 +124,17 @@ std::vector<Cell> common_cells(std::span<const Row> rows, const FigurePlan& plan
   return summarize(on_common_windows(rows_of(rows, plan.configurations)));
 }
 
+/// Returns whether the bound of a configuration is drawn.
+bool has_bound(const std::vector<Cell>& cells, const Configuration& configuration) {
+  return has_points(bound_curve(cells, configuration), true);
+}
+
+/// Returns whether any window has an error, so that the residuals need not stand in for them.
+bool has_errors(std::span<const Row> rows) {
+  return std::ranges::any_of(rows,
+                             [](const Row& row) { return row.ate_m || row.pne_deg || row.pde_m; });
+}
+
 Figure metric_figure(std::span<const Row> rows, const FigurePlan& plan) {
   const std::vector<Cell> cells = common_cells(rows, plan);
   Figure figure{
@@ -137,11 +156,14 @@ Figure figure_over_length(std::span<const Row> rows, const FigurePlan& plan) {
       .title = fmt::format("{}: median and quartiles over the windows that all of them solved ({})",
                            plan.title,
                            windows_text(cells, plan)),
-      .note = fmt::format(  // on the dotted curve
-          "Dotted: Cram\u00e9r-Rao bound of the error for the inliers of {}, their noise and known "
-          "rotations. Other tracks, inliers or noise have another bound, so a curve may be below "
-          "this one.",
-          title_of(plan.configurations.front()))};
+      .note = !has_bound(cells, plan.configurations.front())
+                  ? ""
+                  : fmt::format("Dotted: Cram\u00e9r-Rao bound of the error for the inliers of {}, "
+                                "their noise and known "
+                                "rotations. Other tracks, inliers or noise have another bound, so "
+                                "a curve may be below "
+                                "this one.",
+                                title_of(plan.configurations.front()))};
   for (const Axis& axis : kAxes) figure.charts.push_back(chart_of(cells, plan, axis));
   return figure;
 }
@@ -154,7 +176,8 @@ std::vector<Figure> figures(std::span<const Row> rows,
                             const std::vector<Configuration>& configurations) {
   std::vector<Figure> all;
   for (const FigurePlan& plan : figure_plans(configurations)) {
-    all.push_back(figure_over_length(rows, plan));
+    all.push_back(has_errors(rows) ? figure_over_length(rows, plan)
+                                   : figure_without_truth(rows, plan));
     Figure metric = metric_figure(rows, plan);
     if (!metric.charts.empty()) all.push_back(std::move(metric));
   }

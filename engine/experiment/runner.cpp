@@ -5,6 +5,8 @@
 #include "engine/base/error.h"
 #include "engine/base/parallel.h"
 #include "engine/base/stop.h"
+#include "engine/experiment/differences.h"
+#include "engine/experiment/time_offsets.h"
 #include "engine/files/output_file.h"
 #include "engine/files/text_file.h"
 #include "engine/inspection/inspector.h"
@@ -21,6 +23,8 @@ namespace {
 
 using nlohmann::ordered_json;
 
+constexpr const char* kTimeOffsets = "time_offsets.csv";
+
 fs::path definition_file(const fs::path& folder) { return folder / "experiment.json"; }
 
 fs::path window_file(const fs::path& folder, const std::string& name, int start, int frames) {
@@ -32,12 +36,34 @@ std::vector<std::string> differences_from(const Experiment& experiment,
                                           const ordered_json& window) {
   std::vector<std::string> differs;
   if (window.at("program") != experiment.program) differs.emplace_back("build of the program");
-  if (commands_in(window) != experiment.commands)
-    differs.emplace_back("command or files of a method");
   const auto content = window.at("content").get<RecordingContent>();
   for (const std::string& part : differing_parts(content, recording.content))
     differs.push_back(fmt::format("{} of {}", part, recording.name));
   return differs;
+}
+
+/// Reads the rows of the experiment's methods, except of those with another command or files.
+void read_rows(const Experiment& experiment,
+               const ExperimentRecording& recording,
+               const ordered_json& json,
+               WindowFile& window) {
+  const auto identities = identities_on(experiment, recording), saved = commands_in(json);
+  const auto identity_in = [](const auto& all, const std::string& key) {
+    const auto found = all.find(key);
+    return found == all.end() ? "" : found->second;
+  };
+  const MethodTable methods = methods_of(experiment);
+  for (const ordered_json& row : json.at("rows")) {
+    const auto configuration = std::ranges::find(
+        experiment.configurations, row.at("configuration").get<std::string>(), &key_of);
+    if (configuration == experiment.configurations.end()) continue;
+    const std::string& method = configuration->method.key();
+    if (identity_in(saved, method) != identity_in(identities, method)) {
+      window.differs = {"command or files of a method"};
+      continue;
+    }
+    window.rows[configuration - experiment.configurations.begin()] = row_from_json(row, methods);
+  }
 }
 
 std::string list_of(const std::vector<std::string>& missing) {
@@ -55,7 +81,11 @@ std::optional<std::vector<Row>> find_window(const Experiment& experiment,
   std::string other;
   for (const fs::path& folder : folders) {
     WindowFile window = load_window(folder, experiment, task, frames);
-    if (window.rows) return std::move(window.rows);
+    if (window.complete()) {
+      std::vector<Row> rows;
+      for (std::optional<Row>& row : window.rows) rows.push_back(std::move(*row));
+      return rows;
+    }
     if (window.differs.empty() || !other.empty()) continue;
     const std::string& name = experiment.recordings[task.recording].name;
     other = fmt::format("{}: belongs to another experiment than experiment.json ({})",
@@ -96,8 +126,17 @@ class Run {
       : experiment_(experiment), recordings_(recordings), folder_(folder), options_(options) {
     const auto all = tasks_of(experiment, options.shard);
     const auto tasks = windows_where(all, [&](const ExperimentTask& task, int frames) {
-      return !load_window(folder, experiment, task, frames).rows;
+      const WindowFile window = load_window(folder, experiment, task, frames);
+      progress_.kept += static_cast<int>(
+          std::ranges::count_if(window.rows, [](const auto& row) { return row.has_value(); }));
+      return !window.complete();
     });
+    const auto results = window_count(all) * std::ssize(experiment.configurations);
+    if (options.note && progress_.kept > 0 && progress_.kept < results)
+      options.note(fmt::format("{}: has {} of {} results; the others are computed",
+                               folder.string(),
+                               progress_.kept,
+                               results));
     const int timed = timed_length(experiment.lengths);
     const auto with_length = [&](bool equal) {
       return windows_where(
@@ -154,27 +193,42 @@ class Run {
     // The longest window comes first: the Inspector caches its tracks for the others.
     for (auto length = task.lengths.rbegin(); length != task.lengths.rend(); ++length) {
       const int frames = *length;
+      WindowFile window = load_window(folder_, experiment_, task, frames);
       std::vector<Row> rows;
-      for (const Configuration& configuration : experiment_.configurations) {
-        const Settings settings =
-            apply(configuration,
-                  {.start = task.start, .frames = frames, .options = {.seed = experiment_.seed}});
-        try {
-          const auto inspection = inspector.inspect(settings, stop_.get_token());
-          if (!inspection) break;
-          rows.push_back(make_row(*inspection));
-        } catch (const InputError& error) {
-          rows.push_back(refused_row(recording->name, settings, error.what()));
+      int computed = 0;
+      for (std::size_t i = 0; i < window.rows.size(); ++i) {
+        std::optional<Row>& row = window.rows[i];
+        if (!row) {
+          row = compute_row(inspector, experiment_.configurations[i], task, frames);
+          if (stop_.stop_requested() || !row) return;
+          row->jobs = pass.jobs;
+          row->processor = processor_;
+          ++computed;
         }
-        rows.back().jobs = pass.jobs;
-        rows.back().processor = processor_;
+        rows.push_back(std::move(*row));
       }
-      if (stop_.stop_requested()) return;
       save_window(folder_, experiment_, rows);
       const std::scoped_lock lock(mutex_);
       ++progress_.done;
+      progress_.computed += computed;
       progress_.share += frames / frames_;
       if (options_.progress) options_.progress(progress_);
+    }
+  }
+
+  /// Returns nullopt if stopped.
+  std::optional<Row> compute_row(Inspector& inspector,
+                                 const Configuration& configuration,
+                                 const ExperimentTask& task,
+                                 int frames) {
+    const Settings settings =
+        apply(configuration,
+              {.start = task.start, .frames = frames, .options = {.seed = experiment_.seed}});
+    try {
+      const auto inspection = inspector.inspect(settings, stop_.get_token());
+      return inspection ? std::optional(make_row(*inspection)) : std::nullopt;
+    } catch (const InputError& error) {
+      return refused_row(recordings_[task.recording]->name, settings, error.what());
     }
   }
 
@@ -202,7 +256,10 @@ bool run_experiment(const Experiment& experiment,
     options.note(fmt::format("{}: {} from the earlier run; the affected windows are recomputed",
                              folder.string(),
                              differ_text(differing)));
-  return Run(experiment, recordings, folder, options).finish();
+  if (!Run(experiment, recordings, folder, options).finish()) return false;
+  const Table offsets = time_offset_table(experiment, recordings);
+  if (!offsets.lines.empty()) write_file(folder / kTimeOffsets, to_csv(offsets));
+  return true;
 }
 
 void check_experiment_folder(const fs::path& folder) {
@@ -211,19 +268,23 @@ void check_experiment_folder(const fs::path& folder) {
 
 std::vector<std::string> begin_experiment(const fs::path& folder, const Experiment& experiment) {
   ExperimentDifferences found;
+  Experiment earlier;
   const bool fresh = !fs::exists(definition_file(folder));
   if (fresh) {
     check_experiment_folder(folder);
     make_folder(folder);
   } else {
-    found = differences(read_experiment(folder, methods_of(experiment)), experiment);
+    earlier = read_experiment(folder, methods_of(experiment));
+    found = differences_from_earlier(earlier, experiment);
   }
   if (!found.plan.empty())
-    throw InputError(fmt::format("{}: belongs to another experiment ({}); choose another --output",
-                                 definition_file(folder).string(),
-                                 differ_text(found.plan)));
+    throw InputError(
+        fmt::format("{}: belongs to another experiment ({}); choose another --output, or add to "
+                    "its methods, lengths, starts and recordings",
+                    definition_file(folder).string(),
+                    differ_text(found.plan)));
   // Written first, because it marks the folder as an experiment's.
-  if (fresh || !found.content.empty())
+  if (fresh || !found.content.empty() || !differences(earlier, experiment).plan.empty())
     write_file(definition_file(folder), json_text(to_json(experiment), 2));
   make_folder(folder / "windows");
   return found.content;
@@ -254,7 +315,8 @@ void save_window(const fs::path& folder, const Experiment& experiment, std::span
   ordered_json json = {{"program", experiment.program},
                        {"content", recording->content},
                        {"rows", ordered_json::array()}};
-  if (!experiment.commands.empty()) json["commands"] = experiment.commands;
+  const auto identities = identities_on(experiment, *recording);
+  if (!identities.empty()) json["commands"] = identities;
   for (const Row& row : rows) json["rows"].push_back(to_json(row));
   write_file(window_file(folder, first.recording, first.settings.start, first.settings.frames),
              json_text(json, 1));
@@ -266,21 +328,19 @@ WindowFile load_window(const fs::path& folder,
                        int frames) {
   const ExperimentRecording& recording = experiment.recordings[task.recording];
   const fs::path file = window_file(folder, recording.name, task.start, frames);
-  if (!fs::exists(file)) return {};
+  WindowFile none;
+  none.rows.resize(experiment.configurations.size());
+  if (!fs::exists(file)) return none;
   try {
+    WindowFile window = none;
     const ordered_json json = read_json(file);
-    std::vector<std::string> differs = differences_from(experiment, recording, json);
-    if (!differs.empty()) return {std::nullopt, std::move(differs)};
-    std::vector<Row> rows;
-    const MethodTable methods = methods_of(experiment);
-    for (const ordered_json& row : json.at("rows")) rows.push_back(row_from_json(row, methods));
-    const bool complete =
-        std::ranges::equal(rows, experiment.configurations, {}, &Row::configuration, &key_of);
-    if (complete) return {std::move(rows), {}};
+    window.differs = differences_from(experiment, recording, json);
+    if (window.differs.empty()) read_rows(experiment, recording, json, window);
+    return window;
   } catch (const ordered_json::exception&) {
   } catch (const InputError&) {
   }
-  return {};
+  return none;
 }
 
 std::vector<Row> collect_rows(const Experiment& experiment, std::span<const fs::path> folders) {
@@ -328,6 +388,8 @@ Experiment merge_experiments(std::span<const fs::path> folders,
   const std::size_t configurations = experiment.configurations.size();
   for (std::size_t i = 0; i < rows.size(); i += configurations)
     save_window(output, experiment, std::span(rows).subspan(i, configurations));
+  const fs::path offsets = folders.front() / kTimeOffsets;
+  if (fs::exists(offsets)) write_file(output / kTimeOffsets, read_file(offsets));
   return experiment;
 }
 

@@ -5,12 +5,16 @@
 #include "engine/experiment/experiment.h"
 #include "engine/experiment/row.h"
 
+#include <algorithm>
+
 namespace gpo {
 
 struct ExperimentProgress {
   int done = 0;      ///< windows, also those of earlier runs
   int of = 0;        ///< windows
   double share = 1;  ///< completed share of this run's work, 0 to 1
+  int kept = 0;      ///< results of earlier runs, one per window and method
+  int computed = 0;  ///< results of this run
 };
 
 struct RunOptions {
@@ -21,21 +25,24 @@ struct RunOptions {
   Shard shard = {};
   std::stop_token stop = {};
   std::function<void(const ExperimentProgress&)> progress = {};  ///< called by one thread at a time
-  std::function<void(const std::string&)> note = {};  ///< called if an earlier run is redone
+  std::function<void(const std::string&)> note =
+      {};  ///< called if an earlier run is redone or continued
 };
 
-/// Computes the windows that the folder does not have, or has from other recordings, and saves each
-/// when it is finished. Frees the images of finished recordings. `recordings` are those of the
-/// experiment, in its order. Returns false if stopped; a further call continues. The results do not
-/// depend on jobs and interruptions. A configuration that does not apply to a recording gives a
-/// failed row with the reason. Throws InputError if a file cannot be written.
+/// Computes the results (one per window and method) that the folder does not have, or has from
+/// other recordings, and saves each window when it is finished. Frees the images of finished
+/// recordings. `recordings` are those of the experiment, in its order. Returns false if stopped; a
+/// further call continues. The results do not depend on jobs and interruptions. A configuration
+/// that does not apply to a recording gives a failed row with the reason. Throws InputError if a
+/// file cannot be written.
 bool run_experiment(const Experiment& experiment,
                     std::span<const std::shared_ptr<const Recording>> recordings,
                     const fs::path& folder,
                     const RunOptions& options);
 
-/// Creates a folder with `experiment.json` and `windows/`, or reuses one of the same plan; returns
-/// the names of differing recordings or programs, whose windows will be redone. Throws InputError.
+/// Creates a folder with `experiment.json` and `windows/`, or reuses one whose plan this one
+/// continues (`differences_from_earlier`); returns the names of differing recordings or programs,
+/// whose windows will be redone. Throws InputError.
 std::vector<std::string> begin_experiment(const fs::path& folder, const Experiment& experiment);
 
 /// Throws InputError if the folder has files but no experiment.
@@ -46,8 +53,13 @@ Experiment read_experiment(const fs::path& folder, const MethodTable& methods = 
 void save_window(const fs::path& folder, const Experiment& experiment, std::span<const Row> rows);
 
 struct WindowFile {
-  std::optional<std::vector<Row>> rows;  ///< nullopt if missing, incomplete, broken or different
-  std::vector<std::string> differs;      ///< names of what another experiment has: "fx of desk"
+  /// One per configuration of the experiment; nullopt if missing, broken or different.
+  std::vector<std::optional<Row>> rows;
+  std::vector<std::string> differs;  ///< names of what another experiment has: "fx of desk"
+
+  bool complete() const {
+    return std::ranges::all_of(rows, [](const auto& row) { return row.has_value(); });
+  }
 };
 WindowFile load_window(const fs::path& folder,
                        const Experiment& experiment,

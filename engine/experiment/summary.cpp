@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/experiment/summary.h"
 
+#include "engine/experiment/error_columns.h"
 #include "engine/files/text_file.h"
 #include "engine/geometry/statistics.h"
 
@@ -52,29 +53,6 @@ Cell cell_of(std::span<const Row> rows, const std::string& configuration, int fr
   return cell;
 }
 
-std::set<int> lengths_in(std::span<const Row> rows) {
-  std::set<int> lengths;
-  for (const Row& row : rows) lengths.insert(row.settings.frames);
-  return lengths;
-}
-
-constexpr int kSignificant = -1;  // three significant digits
-
-struct NumberColumn {
-  const char* title;
-  std::vector<const char*> columns;  ///< columns of results.csv, whose medians are added
-  double factor = 1;
-  bool per_frame = false;
-  int digits = kSignificant;  ///< after the decimal point
-};
-
-/// Formats three significant digits without an exponent: "0.0612", "3.98", "1235".
-std::string significant(double value) {
-  const double size = std::abs(value);
-  const int before = size > 0 ? static_cast<int>(std::floor(std::log10(size))) : 0;
-  return fmt::format("{:.{}f}", value, std::clamp(2 - before, 0, 9));
-}
-
 std::string number(const Cell& cell, const NumberColumn& column) {
   double sum = 0;
   for (const char* name : column.columns) {
@@ -82,19 +60,10 @@ std::string number(const Cell& cell, const NumberColumn& column) {
     if (!median) return "-";
     sum += *median;
   }
-  const double value = column.factor * sum / (column.per_frame ? cell.frames : 1);
-  return column.digits == kSignificant ? significant(value)
-                                       : fmt::format("{:.{}f}", value, column.digits);
+  return formatted(sum / (column.per_frame ? cell.frames : 1), column);
 }
 
 std::string windows_of(const Cell& cell) { return fmt::format("{}/{}", cell.ok, cell.windows); }
-
-std::set<int> lengths_to_show(const std::set<int>& all) {
-  constexpr std::array kPreferred{10, 30, 60};
-  if (std::ranges::includes(all, kPreferred)) return {kPreferred.begin(), kPreferred.end()};
-  const std::vector<int> lengths(all.begin(), all.end());
-  return {lengths.front(), lengths[lengths.size() / 2], lengths.back()};
-}
 
 std::string measured_text(std::span<const Row> rows, int frames) {
   std::set<int> jobs;
@@ -116,38 +85,33 @@ std::string measured_text(std::span<const Row> rows, int frames) {
   return text;
 }
 
-std::vector<NumberColumn> error_columns(const std::vector<Cell>& cells) {
-  std::vector<NumberColumn> columns{{.title = "PNE [deg]", .columns = {"pne_deg"}, .digits = 3},
-                                    {.title = "ATE [mm]", .columns = {"ate_m"}, .factor = 1e3},
-                                    {.title = "PDE [mm]", .columns = {"pde_m"}, .factor = 1e3}};
-  const bool inertial = std::ranges::any_of(
-      cells, [](const Cell& cell) { return cell.values.at("gravity_error_deg").count > 0; });
-  if (!inertial) return columns;
-  columns.push_back({.title = "scale error [%]", .columns = {"scale_error_percent"}});
-  columns.push_back({.title = "gravity error [deg]", .columns = {"gravity_error_deg"}});
-  return columns;
+std::vector<NumberColumn> error_columns_of(const std::vector<Cell>& cells) {
+  return error_columns([&](const char* column) {
+    return std::ranges::any_of(cells,
+                               [&](const Cell& cell) { return cell.values.at(column).count > 0; });
+  });
 }
 
-template <class Solved>
-Table errors_table(std::span<const Row> rows,
-                   const std::vector<std::string>& header,
-                   const Solved& solved) {
-  const std::set<int> shown = lengths_to_show(lengths_in(rows));
-  const std::vector<Cell> cells = summarize(rows);
-  const std::vector<NumberColumn> columns = error_columns(cells);
-  Table table;
-  table.caption = "Medians over the solved windows";
-  table.header = {"method", "frames"};
-  table.header.insert(table.header.end(), header.begin(), header.end());
-  for (const NumberColumn& column : columns) table.header.emplace_back(column.title);
-  for (const Cell& cell : cells) {
-    if (!shown.contains(cell.frames)) continue;
-    std::vector<std::string> line{cell.configuration, std::to_string(cell.frames)};
-    for (const std::string& text : solved(cell)) line.push_back(text);
-    for (const NumberColumn& column : columns) line.push_back(number(cell, column));
-    table.lines.push_back(std::move(line));
-  }
-  return table;
+/// Returns the number of windows of each length that all methods solved.
+std::map<int, int> common_counts(std::span<const Row> common) {
+  std::map<int, std::set<WindowKey>> windows;
+  for (const Row& row : common) windows[row.settings.frames].insert(window_of(row));
+  std::map<int, int> counts;
+  for (const auto& [frames, keys] : windows) counts[frames] = static_cast<int>(keys.size());
+  return counts;
+}
+
+/// Returns the median errors of a configuration at a length; "-" for unknown ones.
+std::vector<std::string> medians_of(const std::vector<Cell>& cells,
+                                    const Cell& like,
+                                    const std::vector<NumberColumn>& columns) {
+  const auto cell = std::ranges::find_if(cells, [&](const Cell& one) {
+    return one.configuration == like.configuration && one.frames == like.frames;
+  });
+  std::vector<std::string> texts;
+  for (const NumberColumn& column : columns)
+    texts.push_back(cell == cells.end() ? "-" : number(*cell, column));
+  return texts;
 }
 
 ordered_json cells_json(std::span<const Row> rows) {
@@ -274,15 +238,54 @@ Table running_time_table(std::span<const Row> rows) {
 }
 
 Table overview_table(std::span<const Row> rows) {
-  return errors_table(
-      rows, {"solved"}, [](const Cell& cell) { return std::vector{windows_of(cell)}; });
+  const std::set<int> shown = lengths_to_show(lengths_in(rows));
+  const std::vector<Cell> cells = summarize(rows);
+  const std::vector<Row> common = on_common_windows(rows);
+  const std::vector<Cell> common_cells = summarize(common);
+  const std::vector<NumberColumn> columns = error_columns_of(cells);
+  std::map<int, int> counts = common_counts(common);
+  Table table;
+  table.caption =
+      "Medians over the windows of a length that all methods solved (`common`). `solved`: windows "
+      "that a method solved, of all. A method that solved none of a length is left out there";
+  table.header = {"method", "frames", "solved", "common"};
+  for (const NumberColumn& column : columns) table.header.emplace_back(column.title);
+  for (const Cell& cell : cells) {
+    if (!shown.contains(cell.frames)) continue;
+    std::vector<std::string> line{cell.configuration,
+                                  std::to_string(cell.frames),
+                                  windows_of(cell),
+                                  std::to_string(cell.ok > 0 ? counts[cell.frames] : 0)};
+    for (const std::string& text : medians_of(common_cells, cell, columns)) line.push_back(text);
+    table.lines.push_back(std::move(line));
+  }
+  return table;
 }
 
 Table overview_numbers(std::span<const Row> rows) {
-  Table table = errors_table(rows, {"solved", "of"}, [](const Cell& cell) {
-    return std::vector{std::to_string(cell.ok), std::to_string(cell.windows)};
-  });
-  for (auto& line : table.lines) std::ranges::replace(line, "-", "");
+  const std::set<int> shown = lengths_to_show(lengths_in(rows));
+  const std::vector<Cell> cells = summarize(rows);
+  const std::vector<Row> common = on_common_windows(rows);
+  const std::vector<Cell> common_cells = summarize(common);
+  const std::vector<NumberColumn> columns = error_columns_of(cells);
+  std::map<int, int> counts = common_counts(common);
+  Table table{.caption = {}, .header = {"method", "frames", "solved", "of"}, .lines = {}};
+  for (const NumberColumn& column : columns) table.header.emplace_back(column.title);
+  table.header.emplace_back("common");
+  for (const NumberColumn& column : columns)
+    table.header.push_back(fmt::format("common {}", column.title));
+  for (const Cell& cell : cells) {
+    if (!shown.contains(cell.frames)) continue;
+    std::vector<std::string> line{cell.configuration,
+                                  std::to_string(cell.frames),
+                                  std::to_string(cell.ok),
+                                  std::to_string(cell.windows)};
+    for (const std::string& text : medians_of(cells, cell, columns)) line.push_back(text);
+    line.push_back(std::to_string(cell.ok > 0 ? counts[cell.frames] : 0));
+    for (const std::string& text : medians_of(common_cells, cell, columns)) line.push_back(text);
+    std::ranges::replace(line, "-", "");
+    table.lines.push_back(std::move(line));
+  }
   return table;
 }
 

@@ -308,7 +308,8 @@ std::string with_whole_paths(const std::string& result) {
   char before = '=';
   for (const std::string& part : split(result.substr(equals + 1), ',')) {
     std::error_code none;
-    const bool file = !part.empty() && !part.starts_with("frame=");
+    const bool file = !part.empty() && !part.starts_with("frame=") &&
+                      !part.starts_with("offset=") && !part.starts_with("scale=");
     whole += std::exchange(before, ',') + (file ? fs::absolute(part, none).string() : part);
   }
   return whole;

@@ -4,7 +4,7 @@
 
 #include "engine/files/paths.h"
 #include "engine/geometry/plane.h"
-#include "engine/methods/methods.h"
+#include "engine/methods/recording_method.h"
 #include "engine/recording/companions/colmap_model.h"
 
 namespace gpo {
@@ -17,6 +17,18 @@ struct ChoiceKeys<PosedFrame> {
   static constexpr const char* name = "frame";
   static constexpr std::array keys{"camera", "body"};
 };
+
+/// The unit of a result: meters or arbitrary.
+enum class ResultScale { metric, free };
+
+template <>
+struct ChoiceKeys<ResultScale> {
+  static constexpr const char* name = "scale";
+  static constexpr std::array keys{"metric", "free"};
+};
+
+/// The addition to the times of a result.
+enum class TimeShift { none, estimated, given };
 
 /// The key that matches poses to the frames of a recording.
 enum class FoundBy { time, number, name };
@@ -48,22 +60,42 @@ ResultPoses read_colmap_images(const fs::path& file, std::string_view bytes);
 
 /// Another program's result as named on the command line (see README.md).
 struct ProgramResult {
-  std::string name;                      ///< key and title of the method
-  fs::path poses;                        ///< a trajectory or a COLMAP model
-  fs::path points;                       ///< in the same world; empty: none
-  std::optional<PosedFrame> frame = {};  ///< nullopt: the default of the layout
+  std::string name;                       ///< key and title of the method
+  fs::path poses;                         ///< a trajectory or a COLMAP model
+  fs::path points;                        ///< in the same world; empty: none
+  std::optional<PosedFrame> frame = {};   ///< nullopt: the default of the layout
+  std::optional<ResultScale> scale = {};  ///< nullopt: body poses are metric, camera poses are not
+  TimeShift shift = TimeShift::none;
+  double shift_s = 0;  ///< if given
 };
 
-/// Parses "NAME=FILE[,POINTS][,frame=camera|body]". Throws InputError.
+/// Parses "NAME=FILE[,POINTS][,frame=camera|body][,scale=metric|free][,offset=auto|SECONDS]".
+/// Throws InputError.
 ProgramResult parse_program_result(const std::string& text);
 
 /// Receives each distinct message about a result's frames, poses and plane once.
 using ResultLog = std::function<void(const std::string& name, const std::string& line)>;
 
+/// The files of a result for one recording. Both functions are thread-safe.
+struct ResultReader {
+  std::function<Initialization(const Window& window,
+                               const Sources& sources,
+                               const RecordingFacts& recording,
+                               ImportedResult& imported)>
+      initialize;
+  std::function<std::optional<ImportedResult>(const RecordingFacts& recording)> describe;
+};
+
+/// Reads the files of a result without `{recording}`. Throws InputError.
+ResultReader read_result(const ProgramResult& result, const ResultLog& log);
+
 /// Returns the result as a method. For each window it has the result's cameras, with missing ones
 /// resected, and the plane through the result's points near the window's inlier tracks or, if these
 /// are few, through points triangulated from its cameras. Windows that the result does not cover
-/// fail with a reason. Reads the files; throws InputError. `number` as for `own_method`.
+/// fail with a reason. The time offset is estimated from the whole recording, or else from the
+/// window. Reads the files; throws InputError. If the path of the poses contains `{recording}`, the
+/// files are those of each recording: the method reads them at the first window of a recording and
+/// throws InputError if it has none. `number` as for `own_method`.
 Method result_method(const ProgramResult& result, const ResultLog& log, int number);
 
 /// Returns the plane, in the map's world, through the map's points (3 x n) that the reference

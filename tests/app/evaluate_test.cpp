@@ -1,5 +1,6 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
+#include "engine/files/text_file.h"
 #include "tests/app/program.h"
 
 #include <sstream>
@@ -64,17 +65,18 @@ TEST(Evaluate, WritesAFolderOfResults) {
                         "1,schur,,,,,,typical,after,0.3,ok,,"))
       << "gpo uses only the solver";
   EXPECT_EQ(read_json(folder / "summary.json")["all_windows"].size(), 4U);
-  for (const auto& [file, text] : {std::pair{"running_time.md", "with 9 frames (no windows of 30)"},
-                                   {"running_time.md", "one window at a time, one thread"},
-                                   {"running_time.csv", "\nGPO,1/1,"},
-                                   {"errors.csv", "\ngpo+no-ransac,6,1,1,"},
-                                   {"errors.csv", ",scale error [%],gravity error [deg]\n"},
-                                   {"figures/gpo_ransac.png", "PNG"},
-                                   {"figures/gpo_ransac_meters.png", "PNG"},
-                                   {"figures/gpo_ransac.svg", "<svg"},
-                                   {"figures/gpo_ransac.svg", "width=\"240.94"},  // 85 mm
-                                   {"figures/gpo_ransac.pdf", "%PDF-"},
-                                   {"figures/gpo_ransac.pdf", "/MediaBox [ 0 0 240.94"}})
+  for (const auto& [file, text] :
+       {std::pair{"running_time.md", "with 9 frames (no windows of 30)"},
+        {"running_time.md", "one window at a time, one thread"},
+        {"running_time.csv", "\nGPO,1/1,"},
+        {"errors.csv", "\ngpo+no-ransac,6,1,1,"},
+        {"errors.csv", ",scale error [%],gravity error [deg],common,common PNE [deg],"},
+        {"figures/gpo_ransac.png", "PNG"},
+        {"figures/gpo_ransac_meters.png", "PNG"},
+        {"figures/gpo_ransac.svg", "<svg"},
+        {"figures/gpo_ransac.svg", "width=\"240.94"},  // 85 mm
+        {"figures/gpo_ransac.pdf", "%PDF-"},
+        {"figures/gpo_ransac.pdf", "/MediaBox [ 0 0 240.94"}})
     EXPECT_THAT(read_file(folder / file), HasSubstr(text)) << file;
 }
 
@@ -119,6 +121,116 @@ TEST(Evaluate, ShardsMergeToTheResultsOfOneRun) {
   EXPECT_EQ(shard("2/3", "b").exit_code, 0);
   succeeding(merge);
   expect_same_results(folder / "all", one_run(folder));
+}
+
+/// Writes the true cameras of the desk as a TUM trajectory whose clock is early.
+void write_trajectory(const fs::path& file, double early_s) {
+  succeeding("run {} --frames 60 --true-trajectory {}", kDesk, file);
+  std::istringstream rows(read_file(file));
+  std::string text;
+  for (std::string row; std::getline(rows, row);) {
+    const std::size_t blank = row.find(' ');
+    if (row.starts_with('#')) continue;
+    const double time_s = std::stod(row.substr(0, blank));
+    text += fmt::format("{:.9f}{}\n", time_s - early_s, row.substr(blank));
+  }
+  write_file(file, text);
+}
+
+TEST(Evaluate, WritesTablesAndFiguresForPrintWithAResultOfEachRecording) {
+  const fs::path folder = fresh_folder();
+  const fs::path other = copy_of_desk(folder / "room_2");
+  write_trajectory(folder / "desk.txt", 0);
+  write_trajectory(folder / "room_2.txt", 0);
+  const auto line = [&](const char* lengths) {
+    return fmt::format(
+        "evaluate {0} {1} --methods gpo,gpo_joint,pba,slam --result "
+        "'slam={2}/{{recording}}.txt,scale=metric' --lengths {3} --starts 0,20 --figure-width 85mm "
+        "--bare-figures --output {2}/out",
+        kDesk,
+        other.string(),
+        folder.string(),
+        lengths);
+  };
+  succeeding(line("10"));
+  EXPECT_THAT(succeeding(line("10,20")).err, HasSubstr("has 16 of 32 results; the others are"));
+  const std::string latex = read_file(folder / "out/errors_by_recording.tex");
+  for (const char* text : {"\\toprule", "desk & 2/2", "room\\_2 & 2/2", "all & 4/4", "& slam \\\\"})
+    EXPECT_THAT(latex, HasSubstr(text));
+  EXPECT_THAT(read_file(folder / "out/errors_by_recording.csv"),
+              HasSubstr("\nroom_2,20,slam,2,2,2,"));
+  const std::string errors = read_file(folder / "out/errors.md");
+  EXPECT_THAT(errors, HasSubstr("that all methods solved (`common`)"));
+  EXPECT_THAT(errors, HasSubstr("| desk | 2/2 |"));
+  for (const char* file : {"figures/optimization.pdf",
+                           "figures/by_recording/desk_optimization.pdf",
+                           "figures/by_recording/room_2_optimization.pdf"})
+    EXPECT_THAT(read_file(folder / "out" / file), testing::StartsWith("%PDF-")) << file;
+  EXPECT_THAT(read_file(folder / "out/figures/optimization.svg"), HasSubstr("<title></title>"));
+  // The poses are exact and in meters.
+  const std::string results = read_file(folder / "out/results.csv");
+  std::istringstream rows(results);
+  std::string header;
+  std::getline(rows, header);
+  const auto names = split(header, ',');
+  const auto column = std::ranges::find(names, "scale_error_percent") - names.begin();
+  int checked = 0;
+  for (std::string row; std::getline(rows, row);) {
+    if (row.find(",slam,") == std::string::npos) continue;
+    EXPECT_LT(std::abs(std::stod(split(row, ',')[column])), 0.01) << row;
+    ++checked;
+  }
+  EXPECT_EQ(checked, 8);
+}
+
+TEST(Evaluate, CountsRecordingsWithoutAResultAsFailedAndRefusesIfAllLackOne) {
+  const fs::path folder = fresh_folder();
+  const fs::path other = copy_of_desk(folder / "room");
+  write_trajectory(folder / "desk.txt", 0);
+  const auto line = [&](const std::string& pattern) {
+    return fmt::format(
+        "evaluate {} {} --methods gpo,slam --result 'slam={}' --lengths 10 --starts 0 --output {}",
+        kDesk,
+        other.string(),
+        pattern,
+        (folder / "out").string());
+  };
+  const std::string pattern = (folder / "{recording}.txt").string();
+  EXPECT_THAT(succeeding(line(pattern)).err,
+              HasSubstr("room: slam has no file for it, so its windows count as failed\n"));
+  EXPECT_THAT(read_file(folder / "out/results.csv"), HasSubstr("room.txt: no such file"));
+  EXPECT_THAT(read_file(folder / "out/errors.csv"), HasSubstr("\nslam,10,1,2,"));
+  expect_exit(2,
+              program(line((folder / "none-{recording}.txt").string())),
+              "found no file for any recording, expected one with desk in place of {recording}");
+  write_file(folder / "room.txt", "1 2 3\n");
+  expect_exit(2, program(line(pattern)), "room.txt: found rows of 3 numbers");
+}
+
+TEST(Evaluate, EstimatesReportsAndCorrectsTheTimeOffsetOfAResult) {
+  const fs::path folder = fresh_folder();
+  write_trajectory(folder / "late.txt", 0.02);
+  const auto evaluated = [&](const std::string& suffix) {
+    const fs::path out = folder / ("out" + suffix);
+    const Outcome outcome = succeeding(
+        "evaluate {} --methods slam --result slam={}/late.txt{} --lengths 30 --starts 10 --output "
+        "{}",
+        kDesk,
+        folder.string(),
+        suffix,
+        out.string());
+    const auto cells = split(split(read_file(out / "errors.csv"), '\n')[1], ',');
+    return std::tuple(std::stod(cells[4]), outcome.err, read_file(out / "time_offsets.csv"));
+  };
+  const auto [pne_deg, messages, offsets] = evaluated("");
+  EXPECT_THAT(messages, HasSubstr("slam: time offset +20."));
+  EXPECT_THAT(messages, HasSubstr("by the ground truth; it is not applied, add ,offset=auto"));
+  EXPECT_THAT(offsets, HasSubstr("\ndesk,slam,20."));
+  EXPECT_THAT(offsets, HasSubstr(",0.00,the ground truth\n"));
+  const auto [corrected_deg, other_messages, applied] = evaluated(",offset=auto");
+  EXPECT_THAT(other_messages, HasSubstr("by the ground truth; it is applied"));
+  EXPECT_GT(pne_deg, 5 * corrected_deg);
+  EXPECT_LT(corrected_deg, 0.2);
 }
 
 TEST(Evaluate, ReportsTooLongWindowsOnce) {

@@ -87,7 +87,8 @@ TEST(Readme, EveryCommandWorks) {
   }
   for (const std::string& name :
        split("image.png scene.png window.png desk.json desk.txt desk.ply cube.png "
-             "evaluation/results.csv",
+             "evaluation/results.csv evaluation/errors_by_recording.tex "
+             "evaluation/figures/optimization.pdf",
              ' '))
     EXPECT_GT(fs::file_size(out / name), 0U) << name;
   // The recipe reproduces the bundled recording.

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/experiment/runner.h"
 
+#include "engine/external_methods/own_method.h"
 #include "engine/inspection/inspector.h"
 #include "engine/recording/layouts/open_recording.h"
 #include "tests/engine/experiment/made_rows.h"
@@ -131,6 +132,7 @@ TEST_F(RunnerTest, RejectsAnotherExperiment) {
       error(plan(recordings_, "5,8")),
       HasSubstr(
           "experiment.json: belongs to another experiment (`lengths` differs); choose another"));
+  EXPECT_THAT(error(plan(recordings_, "5")), HasSubstr("or add to its methods, lengths"));
   Experiment other = experiment_;
   other.configurations.pop_back();
   EXPECT_THAT(error(other), HasSubstr("(`methods` differs)"));
@@ -182,6 +184,70 @@ TEST_F(RunnerTest, RejectsFoldersWithOtherFiles) {
   EXPECT_THAT(error_of([&] { run(a_); }),
               HasSubstr("is not empty; choose a new or empty folder, or one with experiment.json"));
   EXPECT_FALSE(fs::exists(a_ / "experiment.json"));
+}
+
+TEST_F(RunnerTest, AddingAMethodLengthOrStartComputesOnlyThese) {
+  const auto extend =
+      [&](const std::string& methods, const std::string& lengths, const std::string& starts) {
+        const Experiment wanted = plan_experiment(recordings_,
+                                                  {.configurations = parse_configurations(methods),
+                                                   .lengths = parse_ranges(lengths, "lengths"),
+                                                   .starts = parse_ranges(starts, "starts"),
+                                                   .seed = 3});
+        ExperimentProgress last;
+        RunOptions options;
+        options.progress = [&](const ExperimentProgress& progress) { last = progress; };
+        EXPECT_TRUE(run_experiment(wanted, recordings_, a_, options));
+        EXPECT_EQ(read_experiment(a_), wanted);
+        return std::pair(last.kept, last.computed);
+      };
+  EXPECT_EQ(extend("gpo", "5", "0,10"), std::pair(0, 2));
+  EXPECT_EQ(extend("gpo", "5", "0,10"), std::pair(2, 0));
+  EXPECT_EQ(extend("gpo+averaging,gpo", "5", "0,10"), std::pair(2, 2));
+  EXPECT_EQ(extend("gpo+averaging,gpo", "5,7", "0,10"), std::pair(4, 4));
+  EXPECT_EQ(extend("gpo,gpo+no-ransac,gpo+averaging", "5,7", "0,10,20"), std::pair(8, 10));
+  const std::string extended = csv(a_);
+  ASSERT_TRUE(run(b_));
+  EXPECT_EQ(extended, csv(b_));
+}
+
+TEST_F(RunnerTest, AddingARecordingKeepsTheOthers) {
+  ASSERT_TRUE(run(a_));
+  Recording other = *recordings_[0];
+  other.name = "other";
+  const Recordings both{recordings_[0], std::make_shared<const Recording>(other)};
+  ExperimentProgress last;
+  RunOptions options;
+  options.progress = [&](const ExperimentProgress& progress) { last = progress; };
+  ASSERT_TRUE(run_experiment(plan(both), both, a_, options));
+  EXPECT_EQ(last.kept, 18);
+  EXPECT_EQ(last.computed, 18);
+}
+
+/// A user's method that fails at once; `identity` stands for its command or files.
+MethodTable with_own(const std::string& identity) {
+  MethodTable methods;
+  const auto fail = [](const Window&, const Sources&, const Watch&) { return failed("mine: no"); };
+  methods.add(own_method("mine", 0, fail, identity));
+  return methods;
+}
+
+TEST_F(RunnerTest, ChangedFilesOfAMethodLeaveTheOtherMethods) {
+  const auto computed = [&](const std::string& identity) {
+    const Experiment wanted =
+        plan_experiment(recordings_,
+                        {.configurations = parse_configurations("gpo,mine", with_own(identity)),
+                         .lengths = {{5, 5}},
+                         .starts = parse_ranges("0,10", "starts")});
+    ExperimentProgress last;
+    RunOptions options;
+    options.progress = [&](const ExperimentProgress& progress) { last = progress; };
+    EXPECT_TRUE(run_experiment(wanted, recordings_, a_, options));
+    return last.computed;
+  };
+  EXPECT_EQ(computed("first"), 4);
+  EXPECT_EQ(computed("first"), 0);
+  EXPECT_EQ(computed("second"), 2);
 }
 
 TEST_F(RunnerTest, TimedWindowsComeLastAndRecordTheirJobs) {

@@ -310,6 +310,7 @@ TEST(Figures, ShowMediansQuartilesTheBoundAndUnsolvedConfigurations) {
   const std::vector<Row> rows{made_row("gpo", 0, 10, 1.0), made_row("gpo+no-ransac", 0, 10, {})};
   const Figure figure = figures(rows, made_experiment().configurations).front();
   EXPECT_EQ(figure.charts[0].curves.size(), 1U);
+  EXPECT_TRUE(figure.charts[2].curves.empty()) << "no window has a PDE";
   EXPECT_THAT(figure.title, HasSubstr("none solved by GPO without RANSAC"));
 }
 
@@ -343,14 +344,20 @@ TEST(Tables, RunningTimesAreForThirtyFramesOrFewerAndDescribeTheirMeasurement) {
 
 TEST(Tables, OverviewShowsSolvedOfTriedWindowsAndLengthsWithThreeDigits) {
   const std::string text = to_text(overview_table(made_rows()));
-  EXPECT_THAT(text, HasSubstr("gpo+no-ransac      10     2/3      4.000      40.0         -\n"));
+  EXPECT_THAT(text,
+              HasSubstr("gpo+no-ransac      10     2/3       2      4.000      40.0         -\n"));
+  EXPECT_THAT(text, HasSubstr("gpo                10     3/3       2      1.500      15.0"))
+      << "without the window of 100 deg, which the other method failed";
   const std::string csv = to_csv(overview_numbers(made_rows()));
-  EXPECT_THAT(csv, HasSubstr("method,frames,solved,of,PNE [deg],ATE [mm],PDE [mm]\n"));
-  EXPECT_THAT(csv, HasSubstr("\ngpo+no-ransac,10,2,3,4.000,40.0,\n"));
+  EXPECT_THAT(
+      csv,
+      HasSubstr("method,frames,solved,of,PNE [deg],ATE [mm],PDE [mm],common,common PNE [deg],"));
+  EXPECT_THAT(csv, HasSubstr("\ngpo,10,3,3,2.000,20.0,,2,1.500,15.0,\n"));
+  EXPECT_THAT(csv, HasSubstr("\ngpo+no-ransac,20,0,1,,,,0,,,\n"));
   const auto ate = [](double ate_m) {
     std::vector<Row> rows{made_row("gpo", 0, 10, 1.0)};
     rows[0].ate_m = ate_m;
-    return overview_table(rows).lines[0][4];
+    return overview_table(rows).lines[0][5];
   };
   EXPECT_EQ(ate(0.0000123456), "0.0123");
   EXPECT_EQ(ate(0.000654321), "0.654");

@@ -4,6 +4,7 @@
 #include "ui/views/charts/charts.h"
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 
 #include <cairo-pdf.h>
@@ -20,12 +21,27 @@ constexpr double kMargin = 10;       // at scale 1
 constexpr double kLineSpacing = 1.35;
 constexpr std::uint32_t kWhite = 0xFFFFFF;
 
+bool is_drawn(const Chart& chart, double y) {
+  return std::isfinite(y) && (y > 0 || !chart.logarithmic);
+}
+
 bool has_few_windows(const Figure& figure) {
-  const auto few = [](int count) { return count > 0 && count < kFewWindows; };
   for (const Chart& chart : figure.charts)
     for (const Curve& curve : chart.curves)
-      if (std::ranges::any_of(curve.counts, few)) return true;
+      for (std::size_t i = 0; i < curve.counts.size(); ++i)
+        if (curve.counts[i] > 0 && curve.counts[i] < kFewWindows && is_drawn(chart, curve.y[i]))
+          return true;
   return false;
+}
+
+/// Returns whether any chart shows a curve of this name.
+bool is_shown(const Figure& figure, const std::string& name) {
+  return std::ranges::any_of(figure.charts, [&](const Chart& chart) {
+    return std::ranges::any_of(chart.curves, [&](const Curve& curve) {
+      return curve.name == name &&
+             std::ranges::any_of(curve.y, [&](double y) { return is_drawn(chart, y); });
+    });
+  });
 }
 
 ChartStyle paper_style(const FigureSheet& sheet) {
@@ -216,7 +232,8 @@ FigureLayout lay_out(const Figure& figure,
   const double lines = kLineSpacing * type.title * static_cast<double>(layout.title.size());
   layout.title_y = kMargin * s + kLineSpacing * type.title / 2;
   const double top = kMargin * s + lines;
-  for (const CurveStyle& style : styles) layout.keys.push_back({&style, style.name});
+  for (const CurveStyle& style : styles)
+    if (is_shown(figure, style.name)) layout.keys.push_back({&style, style.name});
   if (has_few_windows(figure))
     layout.keys.push_back({nullptr, fmt::format("fewer than {} windows", kFewWindows)});
   const double legend_height = place_keys(layout.keys, paper_style(sheet).legend, room, 0.5);

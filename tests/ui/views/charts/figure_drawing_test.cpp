@@ -232,6 +232,32 @@ TEST(FigureView, PointsOfFewWindowsAreHollowAndHaveNoBand) {
       << "only edges of lines";
 }
 
+TEST(FigureView, LegendNamesOnlyWhatIsDrawn) {
+  constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+  Figure figure = small_figure({1, 2, 3});
+  Curve unknown = figure.charts[0].curves[0], zero = unknown;
+  unknown.name = "unknown";
+  unknown.y = {kNan, kNan, kNan};
+  unknown.counts = {1, 1, 1};
+  zero.name = "zero";
+  zero.y = {0, 0, 0};
+  figure.charts[0].curves.push_back(unknown);
+  figure.charts[0].curves.push_back(zero);
+  const auto texts_of = [&] {
+    const std::vector<CurveStyle> styles = curve_styles(figure);
+    std::vector<std::string> texts;
+    for (const LegendKey& key : lay_out(figure, styles, screen_sheet(figure, kSmall)).keys)
+      texts.push_back(key.text);
+    return texts;
+  };
+  EXPECT_EQ(texts_of(), (std::vector<std::string>{"GPO", "zero"}));
+  figure.charts[0].logarithmic = true;
+  EXPECT_EQ(texts_of(), std::vector<std::string>{"GPO"}) << "a logarithmic axis has no zero";
+  figure.charts.push_back(figure.charts[0]);
+  figure.charts[1].logarithmic = false;
+  EXPECT_EQ(texts_of(), (std::vector<std::string>{"GPO", "zero"})) << "it is in the second chart";
+}
+
 TEST(FigureView, ManyBandsAreOutlined) {
   const auto outlines = [](std::size_t curves) {
     Figure figure = paper_figure();

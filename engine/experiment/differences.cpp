@@ -1,0 +1,95 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "engine/experiment/differences.h"
+
+#include <algorithm>
+#include <functional>
+
+#include <fmt/format.h>
+
+namespace gpo {
+namespace {
+
+using Identities = std::map<std::string, std::string>;
+
+/// Returns whether a method of both has different identities.
+bool has_other(const Identities& one, const Identities& other) {
+  return std::ranges::any_of(one, [&](const auto& entry) {
+    const auto same = other.find(entry.first);
+    return same != other.end() && same->second != entry.second;
+  });
+}
+
+/// Returns whether the list lacks an element of another one.
+template <class List, class Projection = std::identity>
+bool lacks(const List& list, const List& other, Projection projection = {}) {
+  return std::ranges::any_of(other, [&](const auto& one) {
+    return std::ranges::find(list, std::invoke(projection, one), projection) == list.end();
+  });
+}
+
+}  // namespace
+
+std::map<std::string, std::string> identities_on(const Experiment& experiment,
+                                                 const ExperimentRecording& recording) {
+  Identities identities;
+  const std::string end = "/" + recording.name;
+  for (const auto& [key, identity] : experiment.commands) {
+    if (key.ends_with(end)) {
+      identities[key.substr(0, key.find('/'))] += " " + identity;  // after that of the method
+    } else if (key.find('/') == std::string::npos) {
+      identities[key] = identity;
+    }
+  }
+  return identities;
+}
+
+ExperimentDifferences differences(const Experiment& a, const Experiment& b) {
+  ExperimentDifferences found;
+  if (a.configurations != b.configurations) found.plan.emplace_back("methods");
+  if (a.lengths != b.lengths) found.plan.emplace_back("lengths");
+  if (a.seed != b.seed) found.plan.emplace_back("seed");
+  if (a.program != b.program) found.content.emplace_back("build of the program");
+  if (a.commands != b.commands) found.content.emplace_back("command or files of a method");
+  constexpr auto kName = &ExperimentRecording::name;
+  if (!std::ranges::equal(a.recordings, b.recordings, {}, kName, kName)) {
+    found.plan.emplace_back("recordings");
+    return found;
+  }
+  bool other_starts = false;
+  for (std::size_t i = 0; i < a.recordings.size(); ++i) {
+    const ExperimentRecording &one = a.recordings[i], &other = b.recordings[i];
+    const auto parts = differing_parts(one.content, other.content);
+    for (const std::string& part : parts)
+      found.content.push_back(fmt::format("{} of {}", part, one.name));
+    // `end` depends on lengths and frames: if these differ, so do the starts.
+    other_starts = other_starts || (parts.empty() && one.starts != other.starts);
+  }
+  if (other_starts && a.lengths == b.lengths) found.plan.emplace_back("starts");
+  return found;
+}
+
+ExperimentDifferences differences_from_earlier(const Experiment& earlier, const Experiment& later) {
+  ExperimentDifferences found;
+  constexpr auto kName = &ExperimentRecording::name;
+  if (lacks(later.configurations, earlier.configurations)) found.plan.emplace_back("methods");
+  if (lacks(later.lengths, earlier.lengths)) found.plan.emplace_back("lengths");
+  if (earlier.seed != later.seed) found.plan.emplace_back("seed");
+  if (lacks(later.recordings, earlier.recordings, kName)) found.plan.emplace_back("recordings");
+  if (earlier.program != later.program) found.content.emplace_back("build of the program");
+  if (has_other(earlier.commands, later.commands))
+    found.content.emplace_back("command or files of a method");
+  bool fewer_starts = false;
+  for (const ExperimentRecording& one : earlier.recordings) {
+    const auto other = std::ranges::find(later.recordings, one.name, kName);
+    if (other == later.recordings.end()) continue;
+    const auto parts = differing_parts(one.content, other->content);
+    for (const std::string& part : parts)
+      found.content.push_back(fmt::format("{} of {}", part, one.name));
+    fewer_starts = fewer_starts || (parts.empty() && lacks(other->starts, one.starts));
+  }
+  if (fewer_starts && earlier.lengths == later.lengths) found.plan.emplace_back("starts");
+  return found;
+}
+
+}  // namespace gpo

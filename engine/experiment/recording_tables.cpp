@@ -1,0 +1,306 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "engine/experiment/recording_tables.h"
+
+#include "engine/files/csv_table.h"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+namespace gpo {
+namespace {
+
+constexpr NumberColumn kResidual{.title = "RMS [px]", .columns = {}, .digits = 3};
+
+std::vector<Row> rows_where(std::span<const Row> rows, const auto& keep) {
+  std::vector<Row> kept;
+  std::ranges::copy_if(rows, std::back_inserter(kept), keep);
+  return kept;
+}
+
+std::vector<std::string> unique_of(std::span<const Row> rows, std::string Row::*member) {
+  std::vector<std::string> found;
+  for (const Row& row : rows)
+    if (std::ranges::find(found, row.*member) == found.end()) found.push_back(row.*member);
+  return found;
+}
+
+/// Returns the cell of a method, empty if there is none.
+Cell cell_or_empty(const std::vector<Cell>& cells, const std::string& method) {
+  const auto found = std::ranges::find(cells, method, &Cell::configuration);
+  return found == cells.end() ? Cell{.configuration = method} : *found;
+}
+
+/// Returns a distribution of a cell; without values if the cell has no windows.
+Distribution distribution_of(const Cell& cell, const NumberColumn& column) {
+  const auto found = cell.values.find(column.columns.front());
+  return found == cell.values.end() ? Distribution{} : found->second;
+}
+
+RecordingLine line_of(const std::string& recording,
+                      std::span<const Row> rows,
+                      const std::vector<std::string>& methods) {
+  RecordingLine line{.recording = recording, .solved = {}};
+  const std::vector<Cell> cells = summarize(rows);
+  const std::vector<Cell> common = summarize(on_common_windows(rows));
+  for (const std::string& method : methods) {
+    const Cell cell = cell_or_empty(cells, method);
+    line.windows = std::max(line.windows, cell.windows);
+    line.solved.push_back(cell.ok);
+    line.common_cells.push_back(cell_or_empty(common, method));
+    line.common = std::max(line.common, line.common_cells.back().windows);
+  }
+  return line;
+}
+
+std::vector<NumberColumn> columns_with_values(const std::vector<RecordingLine>& lines) {
+  std::vector<Cell> cells;
+  for (const RecordingLine& line : lines)
+    for (const Cell& cell : line.common_cells)
+      if (cell.windows > 0) cells.push_back(cell);
+  const auto has_values = [&](const char* column) {
+    return std::ranges::any_of(cells,
+                               [&](const Cell& cell) { return cell.values.at(column).count > 0; });
+  };
+  std::vector<NumberColumn> columns = error_columns(has_values);
+  std::erase_if(columns,
+                [&](const NumberColumn& column) { return !has_values(column.columns.front()); });
+  if (columns.empty()) {
+    columns.push_back(kResidual);
+    columns.back().columns = {"rms_px"};
+  }
+  return columns;
+}
+
+std::string name_of(const RecordingLine& line) { return line.all ? "all" : line.recording; }
+
+std::vector<RecordingTable> tables_of(std::span<const Row> rows, const std::set<int>& lengths) {
+  std::vector<RecordingTable> tables;
+  for (const int frames : lengths) tables.push_back(recording_table(rows, frames));
+  return tables;
+}
+
+/// Returns the indices of the methods with the lowest printed median; empty for a single method.
+std::vector<std::size_t> best_of(const RecordingLine& line, const NumberColumn& column) {
+  std::vector<std::size_t> best;
+  std::optional<std::string> least_text;
+  double least = 0;
+  int known = 0;
+  for (const Cell& cell : line.common_cells) {
+    const auto& median = distribution_of(cell, column).median;
+    if (!median) continue;
+    if (known++ == 0 || *median < least) {
+      least = *median;
+      least_text = formatted(least, column);
+    }
+  }
+  for (std::size_t i = 0; known > 1 && i < line.common_cells.size(); ++i) {
+    const auto& median = distribution_of(line.common_cells[i], column).median;
+    if (median && formatted(*median, column) == least_text) best.push_back(i);
+  }
+  return best;
+}
+
+std::string latex_cell(const Distribution& d, const NumberColumn& column, bool bold) {
+  if (!d.median) return "--";
+  const std::string median = formatted(*d.median, column);
+  return fmt::format("{} {{\\scriptsize [{}, {}]}}",
+                     bold ? "\\textbf{" + median + "}" : median,
+                     formatted(*d.lower, column),
+                     formatted(*d.upper, column));
+}
+
+std::string latex_block(const RecordingTable& table, const NumberColumn& column) {
+  std::string text = fmt::format("    \\multicolumn{{{}}}{{l}}{{\\emph{{{}}}}} \\\\\n",
+                                 table.methods.size() + 2,
+                                 latex_text(column.title));
+  for (const RecordingLine& line : table.lines) {
+    const auto best = best_of(line, column);
+    text += fmt::format("    {} & {}/{}", latex_text(name_of(line)), line.common, line.windows);
+    for (std::size_t i = 0; i < table.methods.size(); ++i) {
+      const bool bold = std::ranges::find(best, i) != best.end();
+      text += " & " + latex_cell(distribution_of(line.common_cells[i], column), column, bold);
+    }
+    text += " \\\\\n";
+  }
+  return text + "    \\midrule\n";
+}
+
+std::string latex_float(const RecordingTable& table) {
+  std::vector<std::string> titles;
+  for (const std::string& title : table.titles) titles.push_back(latex_text(title));
+  std::string text = fmt::format(
+      "\\begin{{table*}}\n"
+      "  \\centering\n"
+      "  \\caption{{Median and quartiles of the errors over the windows of {0} frames that all "
+      "methods solved.}}\n"
+      "  \\label{{tab:errors-{0}}}\n"
+      "  \\begin{{tabular}}{{lr{1}}}\n"
+      "    \\toprule\n"
+      "    Recording & Windows & {2} \\\\\n"
+      "    \\midrule\n",
+      table.frames,
+      std::string(table.methods.size(), 'r'),
+      fmt::join(titles, " & "));
+  for (const NumberColumn& column : table.errors) text += latex_block(table, column);
+  text += fmt::format("    \\multicolumn{{{}}}{{l}}{{\\emph{{Solved windows}}}} \\\\\n",
+                      table.methods.size() + 2);
+  for (const RecordingLine& line : table.lines)
+    text += fmt::format("    {} & {} & {} \\\\\n",
+                        latex_text(name_of(line)),
+                        line.windows,
+                        fmt::join(line.solved, " & "));
+  return text + "    \\bottomrule\n  \\end{tabular}\n\\end{table*}\n";
+}
+
+std::string csv_number(const std::optional<double>& value, const NumberColumn& column) {
+  return value ? fmt::format("{:.6g}", column.factor * *value) : "";
+}
+
+}  // namespace
+
+RecordingTable recording_table(std::span<const Row> rows, int frames) {
+  const std::vector<Row> own =
+      rows_where(rows, [&](const Row& row) { return row.settings.frames == frames; });
+  RecordingTable table{.frames = frames,
+                       .methods = unique_of(rows, &Row::configuration),
+                       .titles = {},
+                       .errors = {}};
+  MethodTable methods;
+  for (const Row& row : rows) methods.add(row.settings.options.method);
+  for (const std::string& method : table.methods)
+    table.titles.push_back(title_of(parse_configuration(method, methods)));
+  const std::vector<std::string> recordings = unique_of(own, &Row::recording);
+  for (const std::string& recording : recordings)
+    table.lines.push_back(
+        line_of(recording,
+                rows_where(own, [&](const Row& row) { return row.recording == recording; }),
+                table.methods));
+  if (recordings.size() > 1) {
+    table.lines.push_back(line_of("*", own, table.methods));
+    table.lines.back().all = true;
+  }
+  table.errors = columns_with_values(table.lines);
+  return table;
+}
+
+std::string recordings_markdown(std::span<const Row> rows) {
+  std::string text;
+  const std::set<int> lengths = lengths_in(rows);
+  const int shown = timed_length({lengths.begin(), lengths.end()});
+  for (const RecordingTable& one : tables_of(rows, {shown}))
+    for (const NumberColumn& column : one.errors) {
+      Table table{.caption = fmt::format("{} with {} frames: median [quartiles] over the windows "
+                                         "of each recording that all methods solved",
+                                         column.title,
+                                         one.frames),
+                  .header = {"recording", "common windows"},
+                  .lines = {}};
+      table.header.insert(table.header.end(), one.methods.begin(), one.methods.end());
+      for (const RecordingLine& line : one.lines) {
+        std::vector<std::string> cells{name_of(line),
+                                       fmt::format("{}/{}", line.common, line.windows)};
+        for (const Cell& cell : line.common_cells) {
+          const Distribution d = distribution_of(cell, column);
+          cells.push_back(d.median ? fmt::format("{} [{}, {}]",
+                                                 formatted(*d.median, column),
+                                                 formatted(*d.lower, column),
+                                                 formatted(*d.upper, column))
+                                   : "-");
+        }
+        table.lines.push_back(std::move(cells));
+      }
+      text += "\n" + to_markdown(table);
+    }
+  return text;
+}
+
+std::string recordings_latex(std::span<const Row> rows) {
+  std::string text =
+      "% Needs \\usepackage{booktabs}. A Windows column of 8/12: all methods solved 8 of 12 "
+      "windows.\n";
+  for (const RecordingTable& table : tables_of(rows, lengths_to_show(lengths_in(rows))))
+    text += latex_float(table);
+  return text;
+}
+
+std::string recordings_csv(std::span<const Row> rows) {
+  const std::vector<RecordingTable> tables = tables_of(rows, lengths_in(rows));
+  std::vector<NumberColumn> columns;
+  for (const RecordingTable& table : tables)
+    for (const NumberColumn& column : table.errors)
+      if (std::ranges::find(columns, std::string(column.title), [](const NumberColumn& one) {
+            return std::string(one.title);
+          }) == columns.end())
+        columns.push_back(column);
+  std::string text = "recording,frames,method,windows,solved,common";
+  for (const NumberColumn& column : columns)
+    for (const char* part : {"median", "lower quartile", "upper quartile"})
+      text += fmt::format(",{} {}", column.title, part);
+  text += "\n";
+  for (const RecordingTable& table : tables)
+    for (const RecordingLine& line : table.lines)
+      for (std::size_t i = 0; i < table.methods.size(); ++i) {
+        text += fmt::format("{},{},{},{},{},{}",
+                            csv_quoted(line.all ? "*" : line.recording),
+                            table.frames,
+                            table.methods[i],
+                            line.windows,
+                            line.solved[i],
+                            line.solved[i] > 0 ? line.common : 0);
+        for (const NumberColumn& column : columns) {
+          const Distribution d = distribution_of(line.common_cells[i], column);
+          for (const auto* value : {&d.median, &d.lower, &d.upper})
+            text += "," + csv_number(*value, column);
+        }
+        text += "\n";
+      }
+  return text;
+}
+
+std::string latex_text(const std::string& text) {
+  std::string escaped;
+  for (const char c : text) {
+    switch (c) {
+      case '\\':
+        escaped += "\\textbackslash{}";
+        break;
+      case '~':
+        escaped += "\\textasciitilde{}";
+        break;
+      case '^':
+        escaped += "\\textasciicircum{}";
+        break;
+      case '&':
+      case '%':
+      case '$':
+      case '#':
+      case '_':
+      case '{':
+      case '}':
+        escaped += '\\';
+        [[fallthrough]];
+      default:
+        escaped += c;
+    }
+  }
+  return escaped;
+}
+
+std::vector<Figure> recording_figures(std::span<const Row> rows,
+                                      const std::vector<Configuration>& configurations) {
+  std::vector<Figure> all;
+  for (const std::string& recording : unique_of(rows, &Row::recording)) {
+    const auto own = rows_where(rows, [&](const Row& row) { return row.recording == recording; });
+    for (Figure& figure : figures(own, configurations)) {
+      figure.name = recording + "_" + figure.name;
+      figure.title = recording + ": " + figure.title;
+      all.push_back(std::move(figure));
+    }
+  }
+  return all;
+}
+
+}  // namespace gpo
