@@ -163,8 +163,15 @@ TEST(Pages, ManualNamesEveryOptionOfEveryCommand) {
   const Outcome rendered = shell("groff -man -Tutf8 -ww {} | col -bx", file);
   EXPECT_EQ(rendered.err, "");
   const auto documented = options_in(rendered.out);
-  for (const char* command :
-       {"view", "info", "run", "snapshot", "evaluate", "calibrate", "convert", "synthesize"}) {
+  for (const char* command : {"view",
+                              "info",
+                              "run",
+                              "snapshot",
+                              "evaluate",
+                              "calibrate",
+                              "convert",
+                              "record",
+                              "synthesize"}) {
     const auto options = options_in(succeeding("{} --help", command).out);
     EXPECT_THAT(options, testing::SizeIs(testing::Ge(2))) << command;
     for (const std::string& option : options)
