@@ -6,7 +6,7 @@ build_packages=(
   libeigen3-dev libceres-dev libopencv-dev libopengv-dev libvtk9-dev
   libglfw3-dev libdecor-0-plugin-1-cairo libimgui-dev libcairo2-dev libstb-dev libglew-dev libgl-dev libegl-dev libgl1-mesa-dri libegl1
   libyaml-cpp-dev libtinyxml2-dev zlib1g-dev nlohmann-json3-dev libcli11-dev libfmt-dev
-  libavformat-dev libavcodec-dev libavutil-dev libswscale-dev
+  libavformat-dev libavcodec-dev libavutil-dev libswscale-dev libavdevice-dev
   libpng-dev libjpeg-dev libbz2-dev liblz4-dev libzstd-dev libsqlite3-dev libexiv2-dev
 )
 python_packages=(python3-dev pybind11-dev python3-numpy)

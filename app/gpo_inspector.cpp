@@ -17,6 +17,7 @@ namespace {
 
 constexpr gpo::CommandRow kCommands[] = {{"info", gpo::add_info},
                                          {"convert", gpo::add_convert},
+                                         {"record", gpo::add_record},
                                          {"run", gpo::add_run, true},
                                          {"synthesize", gpo::add_synthesize}};
 

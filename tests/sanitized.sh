@@ -39,7 +39,7 @@ run() {
   shift
   cmake --preset "$preset"
   cmake --build --preset "$preset" --parallel "$jobs" \
-    --target engine_tests ui_tests monkey_tests fuzz_tests app_tests video_tests
+    --target engine_tests ui_tests monkey_tests fuzz_tests app_tests video_tests live_tests live_app_tests
   local preload=
   if [ "$preset" = asan ]; then
     preload=$PWD/build/asan/keep_loaded.so

@@ -8,6 +8,7 @@ std::span<const CommandRow> all_commands() {
   static constexpr CommandRow kRows[] = {{"view", add_view, true},
                                          {"info", add_info},
                                          {"convert", add_convert},
+                                         {"record", add_record},
                                          {"run", add_run, true},
                                          {"snapshot", add_snapshot, true},
                                          {"report", add_report, true},

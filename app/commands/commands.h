@@ -12,6 +12,7 @@
 #include "engine/inspection/report/report.h"
 #include "engine/inspection/settings/settings_table.h"
 #include "engine/recording/bags/messages.h"
+#include "engine/recording/layouts/write_recording.h"
 
 #include <cstddef>
 #include <optional>
@@ -49,6 +50,7 @@ RunCommand add_convert(CLI::App& app);
 RunCommand add_evaluate(CLI::App& app);
 RunCommand add_info(CLI::App& app);
 RunCommand add_pages(CLI::App& app);  ///< for packagers, not listed in --help
+RunCommand add_record(CLI::App& app);
 RunCommand add_report(CLI::App& app);
 RunCommand add_run(CLI::App& app);
 RunCommand add_snapshot(CLI::App& app);
@@ -76,6 +78,14 @@ CLI::Option* add_choice(CLI::App& command,
 RecordingInfo found_in(const std::shared_ptr<const Recording>& recording);
 
 inline constexpr const char* kRecordingHelp = "Folder or file of a recording, or a recipe";
+inline constexpr const char* kSourceHelp =
+    "camera:NUMBER[,WIDTHxHEIGHT[,HZ]], a stream (rtsp://, http://, udp://), or a recording, which "
+    "is played in real time";
+
+/// Returns the format to write: `wanted`, else as the extension of the output tells. Throws
+/// InputError if the extension is that of another format.
+RecordingFormat recording_format(const std::filesystem::path& output,
+                                 const std::optional<RecordingFormat>& wanted);
 
 void add_topics(CLI::App& command, TopicChoices& topics);
 void add_cache(CLI::App& command, std::size_t& mib);

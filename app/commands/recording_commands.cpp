@@ -94,23 +94,9 @@ int print_info(const InfoArguments& arguments) {
   return kDone;
 }
 
-/// Returns the format to write. Throws InputError if the extension is that of another format.
-RecordingFormat format_of(const ConvertArguments& arguments) {
-  const std::string extension = arguments.output.extension();
-  const RecordingFormat named = extension == ".bag"    ? RecordingFormat::rosbag
-                                : extension == ".mcap" ? RecordingFormat::mcap
-                                                       : RecordingFormat::euroc;
-  const RecordingFormat format = arguments.format.value_or(named);
-  if (format == RecordingFormat::euroc && named != format)
-    throw InputError(fmt::format("--format euroc writes a folder, but {} names a {} file",
-                                 arguments.output.string(),
-                                 to_string(named)));
-  return format;
-}
-
 int convert_recording(const ConvertArguments& arguments) {
   const fs::path& output = arguments.output;
-  const RecordingFormat format = format_of(arguments);
+  const RecordingFormat format = recording_format(output, arguments.format);
   const auto opened = open_given(
       arguments.recording, {.tracks = {}, .topics = arguments.topics}, false, kAllFrames);
   saying(output.string() + " was not written", [&] {
@@ -280,6 +266,20 @@ RecordingInfo found_in(const std::shared_ptr<const Recording>& recording) {
   if (const auto why = gyroscope_disagreement(recording, info.rate_hz); !why.empty())
     info.notes.push_back(why);
   return info;
+}
+
+RecordingFormat recording_format(const fs::path& output,
+                                 const std::optional<RecordingFormat>& wanted) {
+  const std::string extension = output.extension();
+  const RecordingFormat named = extension == ".bag"    ? RecordingFormat::rosbag
+                                : extension == ".mcap" ? RecordingFormat::mcap
+                                                       : RecordingFormat::euroc;
+  const RecordingFormat format = wanted.value_or(named);
+  if (format == RecordingFormat::euroc && named != format)
+    throw InputError(fmt::format("--format euroc writes a folder, but {} names a {} file",
+                                 output.string(),
+                                 to_string(named)));
+  return format;
 }
 
 RunCommand add_info(CLI::App& app) {

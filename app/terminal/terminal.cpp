@@ -117,7 +117,10 @@ void Interrupt::wait(const std::stop_token& end) {
   while (!end.stop_requested()) {
     if (sigtimedwait(&signals_, nullptr, &kPoll) > 0) {
       if (source_.stop_requested()) deadline = Clock::now();
-      end_soon(kInterrupted);
+      if (lets_finish_ && !deadline)
+        source_.request_stop();
+      else
+        end_soon(kInterrupted);
     }
     if (code_ == kRuns) continue;
     if (!deadline) deadline = Clock::now() + kGrace;

@@ -47,6 +47,8 @@ class Interrupt {
   Interrupt();
   ~Interrupt();
 
+  /// From now on the first signal only stops the work, however long its end takes.
+  void let_finish() { lets_finish_ = true; }
   /// Does the same with another exit code, without a message.
   void end_soon(int code);
 
@@ -58,6 +60,7 @@ class Interrupt {
   std::stop_source source_;
   StopWatch watch_{.stop = source_.get_token()};
   StopScope scope_{&watch_};
+  std::atomic<bool> lets_finish_ = false;
   std::atomic<int> code_ = kRuns;
   static constexpr int kRuns = -1;
   std::jthread waiter_;  ///< last: it starts when all the others exist

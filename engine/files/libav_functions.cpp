@@ -35,6 +35,13 @@ void* find(const char* name) {
   refuse_symbol(format.file.c_str(), name);
 }
 
+void* find_in_devices(const char* name) {
+  find("avformat_open_input");  // loads the libraries that it needs
+  static const Library devices("libavdevice", LIBAVDEVICE_VERSION_MAJOR);
+  if (void* const address = find_symbol(devices.handle, name)) return address;
+  refuse_symbol(devices.file.c_str(), name);
+}
+
 void before_loading(void (*call)()) { first_call = call; }
 
 }  // namespace gpo::libav

@@ -8,6 +8,7 @@
 
 extern "C" {
 #include <libavcodec/avcodec.h>
+#include <libavdevice/avdevice.h>
 #include <libavformat/avformat.h>
 #include <libavutil/display.h>
 #include <libavutil/sha.h>
@@ -21,8 +22,13 @@ namespace gpo::libav {
 /// Finds a function in FFmpeg's libraries of the version of the headers. Throws InputError.
 void* find(const char* name);
 
+/// The same in its library for cameras.
+void* find_in_devices(const char* name);
+
 template <class F>
 using Function = LateFunction<F, find>;
+template <class F>
+using DeviceFunction = LateFunction<F, find_in_devices>;
 
 /// Sets what is called once, before the library for files is loaded.
 void before_loading(void (*call)());
@@ -35,6 +41,8 @@ inline const Function<decltype(::av_display_matrix_flip)> av_display_matrix_flip
     "av_display_matrix_flip"};
 inline const Function<decltype(::av_display_rotation_get)> av_display_rotation_get{
     "av_display_rotation_get"};
+inline const Function<const AVInputFormat*(const char*)> av_find_input_format{
+    "av_find_input_format"};
 inline const Function<decltype(::av_find_best_stream)> av_find_best_stream{"av_find_best_stream"};
 inline const Function<decltype(::av_frame_alloc)> av_frame_alloc{"av_frame_alloc"};
 inline const Function<decltype(::av_frame_free)> av_frame_free{"av_frame_free"};
@@ -76,6 +84,8 @@ inline const Function<decltype(::avcodec_receive_packet)> avcodec_receive_packet
     "avcodec_receive_packet"};
 inline const Function<decltype(::avcodec_send_frame)> avcodec_send_frame{"avcodec_send_frame"};
 inline const Function<decltype(::avcodec_send_packet)> avcodec_send_packet{"avcodec_send_packet"};
+inline const DeviceFunction<decltype(::avdevice_register_all)> avdevice_register_all{
+    "avdevice_register_all"};
 inline const Function<decltype(::avformat_alloc_context)> avformat_alloc_context{
     "avformat_alloc_context"};
 inline const Function<decltype(::avformat_alloc_output_context2)> avformat_alloc_output_context2{

@@ -172,6 +172,7 @@ TEST(Pages, ManualNamesEveryOptionOfEveryCommand) {
                               "evaluate",
                               "calibrate",
                               "convert",
+                              "record",
                               "synthesize"}) {
     const auto options = options_in(succeeding("{} --help", command).out);
     EXPECT_THAT(options, testing::SizeIs(testing::Ge(2))) << command;

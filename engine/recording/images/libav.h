@@ -13,6 +13,8 @@
 #include <memory>
 #include <string>
 
+#include <opencv2/core.hpp>
+
 /// FFmpeg's objects, freed by its own functions.
 namespace gpo::libav {
 
@@ -50,6 +52,35 @@ inline void set_scaler(Scaler& scaler, int width, int height, int from_format, i
                                     nullptr,
                                     nullptr));
 }
+
+/// Converts decoded frames to CV_8UC3, BGR.
+class BgrConverter {
+ public:
+  /// Returns an empty image if the pixel format is not supported.
+  cv::Mat operator()(const AVFrame& from) {
+    set_scaler(scaler_, from.width, from.height, from.format, AV_PIX_FMT_BGR24);
+    if (!scaler_) return {};
+    if (from.color_range == AVCOL_RANGE_JPEG) use_full_range();
+    cv::Mat bgr(from.height, from.width, CV_8UC3);
+    std::uint8_t* const planes[] = {bgr.data};
+    const int strides[] = {static_cast<int>(bgr.step)};
+    sws_scale(scaler_.get(), from.data, from.linesize, 0, from.height, planes, strides);
+    return bgr;
+  }
+
+ private:
+  /// The scaler knows the range only of the pixel formats for JPEG; others would be clipped.
+  void use_full_range() {
+    if (full_range_ == scaler_.get()) return;
+    const int* table = sws_getCoefficients(SWS_CS_DEFAULT);
+    constexpr int kNoChange = 1 << 16;
+    sws_setColorspaceDetails(scaler_.get(), table, 1, table, 1, 0, kNoChange, kNoChange);
+    full_range_ = scaler_.get();
+  }
+
+  Scaler scaler_;
+  SwsContext* full_range_ = nullptr;  ///< the scaler, if set to the full range
+};
 
 /// Limits the blocks that FFmpeg allocates, as a container may claim any number of frames.
 inline void limit_memory() {

@@ -63,8 +63,7 @@ struct VideoDecoder::Input {
   libav::Codec codec;
   libav::Packet packet{libav::av_packet_alloc()};
   libav::Frame frame{libav::av_frame_alloc()};
-  libav::Scaler scaler;
-  SwsContext* full_range = nullptr;  ///< the scaler, if set to the full range
+  libav::BgrConverter convert;
 
   explicit Input(const fs::path& file) : format(libav::open_input(file, libav::kVideoContainers)) {
     if (!format || libav::avformat_find_stream_info(format.get(), nullptr) < 0) {
@@ -120,26 +119,11 @@ struct VideoDecoder::Input {
   }
 
   cv::Mat image(const fs::path& file) {
-    const AVFrame& from = *frame;
-    libav::set_scaler(scaler, from.width, from.height, from.format, AV_PIX_FMT_BGR24);
-    if (!scaler) fail_to_open(file);
-    if (from.color_range == AVCOL_RANGE_JPEG) use_full_range();
-    cv::Mat bgr(from.height, from.width, CV_8UC3);
-    std::uint8_t* const planes[] = {bgr.data};
-    const int strides[] = {static_cast<int>(bgr.step)};
-    libav::sws_scale(scaler.get(), from.data, from.linesize, 0, from.height, planes, strides);
+    cv::Mat bgr = convert(*frame);
+    if (bgr.empty()) fail_to_open(file);
     const int turns = orientation_of(*stream).quarter_turns;
     if (turns > 0) cv::rotate(bgr, bgr, turns - 1);
     return bgr;
-  }
-
-  /// The scaler knows the range only of the pixel formats for JPEG; others would be clipped.
-  void use_full_range() {
-    if (full_range == scaler.get()) return;
-    const int* table = libav::sws_getCoefficients(SWS_CS_DEFAULT);
-    constexpr int kNoChange = 1 << 16;
-    libav::sws_setColorspaceDetails(scaler.get(), table, 1, table, 1, 0, kNoChange, kNoChange);
-    full_range = scaler.get();
   }
 };
 

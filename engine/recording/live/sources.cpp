@@ -1,0 +1,111 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "engine/recording/live/sources.h"
+
+#include "engine/files/refuse.h"
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <condition_variable>
+#include <memory>
+#include <mutex>
+
+namespace gpo {
+namespace {
+
+std::int64_t count_ns(auto duration) {
+  return std::chrono::duration_cast<std::chrono::nanoseconds>(duration).count();
+}
+
+void sleep_until(std::int64_t steady_ns, const std::stop_token& stop) {
+  std::mutex mutex;
+  std::condition_variable_any never;
+  std::unique_lock lock(mutex);
+  const std::chrono::steady_clock::time_point end{std::chrono::nanoseconds(steady_ns)};
+  never.wait_until(lock, stop, end, [] { return false; });
+}
+
+}  // namespace
+
+LiveClock real_clock() {
+  // The steady clock, moved once, so that setting the system's clock does not shift times.
+  const auto steady_now_ns = [] {
+    return count_ns(std::chrono::steady_clock::now().time_since_epoch());
+  };
+  const std::int64_t since_1970_ns =
+      count_ns(std::chrono::system_clock::now().time_since_epoch()) - steady_now_ns();
+  return {[=] { return steady_now_ns() + since_1970_ns; },
+          [=](std::int64_t time_ns, const std::stop_token& stop) {
+            sleep_until(time_ns - since_1970_ns, stop);
+          }};
+}
+
+std::span<const SourceRow> source_rows() {
+  static constexpr auto kRows = std::to_array<SourceRow>({{.prefix = "camera:",
+                                                           .title = "camera",
+                                                           .example = "camera:0",
+                                                           .is_live = true,
+                                                           .open = open_camera},
+                                                          {.prefix = "rtsp://",
+                                                           .title = "RTSP stream",
+                                                           .example = "rtsp://HOST:8554/NAME",
+                                                           .is_live = true,
+                                                           .reconnects = true,
+                                                           .open = open_stream},
+                                                          {.prefix = "http://",
+                                                           .title = "HTTP stream (MJPEG, MPEG-TS)",
+                                                           .example = "http://HOST:8080/video",
+                                                           .is_live = true,
+                                                           .reconnects = true,
+                                                           .open = open_stream},
+                                                          {.prefix = "udp://",
+                                                           .title = "UDP stream (MPEG-TS)",
+                                                           .example = "udp://0.0.0.0:5000",
+                                                           .is_live = true,
+                                                           .reconnects = true,
+                                                           .open = open_stream},
+                                                          {.prefix = "",
+                                                           .title = "recording in real time",
+                                                           .example = "VIDEO.mp4",
+                                                           .open = open_player}});
+  return kRows;
+}
+
+const SourceRow& source_row(const std::string& address) {
+  return *std::ranges::find_if(
+      source_rows(), [&](const SourceRow& row) { return address.starts_with(row.prefix); });
+}
+
+OpenSource open_player(const SourceAddress& address, const SourceContext& context) {
+  const auto& recording = address.recording;
+  if (!recording || !recording->images)
+    refuse(address.text, "has no images; choose a video or a recording with images");
+  const std::int64_t begin_ns = context.clock.now_ns();
+  return {.device = "",
+          .read = [=, next = std::make_shared<int>(0)]() -> std::optional<TimedImage> {
+            if (*next >= recording->frame_count()) return std::nullopt;
+            const std::int64_t time_ns = recording->timestamps_ns[*next];
+            const std::int64_t due_ns = begin_ns + time_ns - recording->timestamps_ns.front();
+            const cv::Mat bgr = recording->images->bgr(*next);
+            context.clock.wait_until(due_ns, context.stop);
+            if (context.stop.stop_requested()) return std::nullopt;
+            ++*next;
+            return TimedImage{bgr, time_ns};
+          }};
+}
+
+std::int64_t CaptureTimes::next(std::int64_t arrival_ns,
+                                const std::optional<std::int64_t>& sender_ns) {
+  std::int64_t time_ns = arrival_ns;
+  if (sender_ns) {
+    const auto apart = [&] { return std::abs(*sender_ns + *offset_ns_ - arrival_ns); };
+    if (!offset_ns_ || apart() > kMostApart_ns) offset_ns_ = arrival_ns - *sender_ns;
+    time_ns = *sender_ns + *offset_ns_;
+  }
+  if (last_ns_) time_ns = std::max(time_ns, *last_ns_ + 1);
+  last_ns_ = time_ns;
+  return time_ns;
+}
+
+}  // namespace gpo

@@ -1,0 +1,81 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "engine/recording/layouts/open_recording.h"
+#include "tests/app/program.h"
+#include "tests/engine/recording/images/made_video.h"
+#include "tests/live/sender.h"
+
+#include <gmock/gmock.h>
+#include <opencv2/imgproc.hpp>
+
+namespace gpo::test {
+namespace {
+
+using testing::HasSubstr;
+
+const cv::Size kSmall(160, 128);
+
+double mean_difference(const cv::Mat& a, const cv::Mat& b) {
+  return cv::norm(a, b, cv::NORM_L1) / static_cast<double>(a.total() * 3);
+}
+
+TEST(Record, WritesAStreamThatAnotherProgramSends) {
+  const fs::path folder = fresh_folder();
+  const auto sent = moving_images(40, kSmall);
+  make_video(folder / "sent.ts", sent);
+  const std::string stream = read_file(folder / "sent.ts");
+  HttpSender sender([&](const Client& client, int number) {
+    if (number == 0) client.send(http_head("video/mp2t") + stream);
+  });
+  const Outcome outcome =
+      succeeding("record {} --output {} --seconds 1.5", sender.address(), folder / "euroc");
+  EXPECT_THAT(outcome.out, HasSubstr(" frames, 160x128, 1.5 s, 0 dropped"));
+  const auto recording = open_recording(folder / "euroc");
+  ASSERT_GE(recording->frame_count(), 37);
+  EXPECT_EQ(recording->camera_source, CameraSource::guess);
+  for (int i = 0; i < recording->frame_count(); ++i) {
+    EXPECT_LT(mean_difference(recording->images->bgr(i), sent[i]), 6) << i;
+    EXPECT_EQ(recording->timestamps_ns[i] - recording->timestamps_ns[0], i * 40'000'000LL);
+  }
+}
+
+TEST(Record, WritesABagOfARecordingThatItPlays) {
+  const fs::path folder = fresh_folder();
+  make_video(folder / "played.avi", moving_images(12, kSmall));
+  succeeding("record {} --output {}", folder / "played.avi", folder / "out.mcap");
+  const auto recording = open_recording(folder / "out.mcap");
+  EXPECT_EQ(recording->frame_count(), 12);
+  EXPECT_EQ(recording->timestamps_ns[11] - recording->timestamps_ns[0], 11 * 40'000'000LL);
+}
+
+TEST(Record, KeepsWhatWasRecordedWhenItIsInterrupted) {
+  const fs::path folder = fresh_folder();
+  const auto jpegs = jpegs_of(moving_images(10, kSmall));
+  HttpSender sender([&](const Client& client, int) {
+    client.send(http_head("multipart/x-mixed-replace; boundary=frame"));
+    for (const std::string& jpeg : jpegs) client.send(jpeg_part(jpeg));
+    client.send("--frame\r\n");
+    client.wait([] { return false; });
+  });
+  const Outcome outcome =
+      signaled("INT",
+               fmt::format("find {} -name '*.frames' -size +539k | grep -q .", folder),  // 9 images
+               fmt::format("record {} --output {}/out", sender.address(), folder));
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_THAT(outcome.out, HasSubstr(" frames, 160x128"));
+  EXPECT_GE(open_recording(folder / "out")->frame_count(), 9);
+}
+
+TEST(Record, RefusesWhatItCannotOpenOrWrite) {
+  const fs::path folder = fresh_folder();
+  const std::string none = "http://127.0.0.1:" + std::to_string(free_port()) + "/a";
+  expect_refused(program("record {} --output {}/a", none, folder), none + ": Connection refused");
+  expect_refused(program("record camera:63 --output {}/a", folder), "camera:63: no such camera");
+  expect_refused(program("record nothing.mp4 --output {}/a", folder), "nothing.mp4: no such file");
+  write_file(folder / "old" / "file", "");
+  expect_refused(program("record camera:63 --output {}/old", folder), "not empty");
+  EXPECT_FALSE(fs::exists(folder / "a"));
+}
+
+}  // namespace
+}  // namespace gpo::test
