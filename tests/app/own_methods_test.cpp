@@ -235,10 +235,11 @@ TEST(Result, ColmapAndOrbSlamSolveTheDesk) {
 }
 
 TEST(Result, ReportsItsFormatOnce) {
-  EXPECT_EQ(program("run {} --method orb {}", kDesk, kOrb).err,
-            "orb: TUM with nanoseconds, camera poses; 28 of the window's 30 frames (2 in gaps of up "
-            "to 0.1 s between poses), the others resected; plane through points triangulated from "
-            "its cameras\n");
+  EXPECT_EQ(
+      program("run {} --method orb {}", kDesk, kOrb).err,
+      "orb: TUM with nanoseconds, camera poses; 28 of the window's 30 frames (2 in gaps of up "
+      "to 0.1 s between poses), the others resected; plane through points triangulated from "
+      "its cameras\n");
 }
 
 TEST(Result, ReadsOurOwnTrajectory) {

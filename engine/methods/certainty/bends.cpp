@@ -104,7 +104,7 @@ std::optional<Surface> surface_of(const SolvedPlanes& solved, int plane, double 
 /// The problem with free rotations, linearized at the solution, and its gradient.
 struct FreeMotion {
   Bread bread;
-  SharedMatrix inverse;  ///< of the information about the shared unknowns
+  SharedMatrix inverse;  ///< inverse of the information about the shared unknowns
   std::vector<OwnVector> own_gradients;
   Eigen::VectorXd shared_gradient;  ///< with the frames' own unknowns eliminated
 };

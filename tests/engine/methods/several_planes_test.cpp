@@ -197,8 +197,8 @@ TEST(CurvedSurfaces, AreNeverReadyAndHaveLargeUncertainty) {
   EXPECT_GE(explained, 0.9 * solved);
 }
 
-// A motion with free rotations absorbs most of a slight bend; the estimated variation is that of the
-// surface all the same, for every method that assumes one plane.
+// A motion with free rotations absorbs most of a slight bend; the estimated variation is that of
+// the surface all the same, for every method that assumes one plane.
 TEST(CurvedSurfaces, VariationOfNormalIsMeasuredBesideFreeMotion) {
   for (const char* key : {"gpo_joint", "gpo", "pba", "dbscan"}) {
     const Method& method = find_method(key);
@@ -206,8 +206,9 @@ TEST(CurvedSurfaces, VariationOfNormalIsMeasuredBesideFreeMotion) {
     double planes = 0;
     for (std::uint64_t seed = 1; seed <= 20; ++seed) {
       const Curved curved{8, seed % 2 == 0, Vector3d(0, 0, 1)};
-      const Room room = simulate_room(
-          {.surface = [&](const Vector3d& ray) { return curved.inverse_depth(ray); }, .seed = seed});
+      const Room room =
+          simulate_room({.surface = [&](const Vector3d& ray) { return curved.inverse_depth(ray); },
+                         .seed = seed});
       if (room.window.planes.empty()) continue;
       const Initialization result =
           assessed(method, room.window, method.initialize(room.window, {}, {}));

@@ -24,7 +24,7 @@ Yuv yuv_of(const cv::Vec3d& bgr) {
           byte(128 + (bgr[2] - luma) / 1.402 * 224 / 255)};
 }
 
-std::string repeated(const std::string& pattern, int times) {
+std::string text_repeated(const std::string& pattern, int times) {
   std::string all;
   for (int i = 0; i < times; ++i) all += pattern;
   return all;
@@ -60,14 +60,14 @@ TEST(PixelLayouts, DecodeColorDifferences) {
   const std::string yuyv = {y, u, y, v}, uyvy = {u, y, v, y};
   const std::string luma(kImageColumns * kImageRows, y);
   const auto below = [&](char first, char second) {
-    return luma + repeated({first, second}, kImageColumns * kImageRows / 4);
+    return luma + text_repeated({first, second}, kImageColumns * kImageRows / 4);
   };
   for (const char* name : {"yuyv", "yuv422_yuy2"})
     expect_orange(decoded(raw_image_message(
-        name, 2 * kImageColumns, repeated(yuyv, kImageColumns * kImageRows / 2))));
+        name, 2 * kImageColumns, text_repeated(yuyv, kImageColumns * kImageRows / 2))));
   for (const char* name : {"uyvy", "yuv422"})
     expect_orange(decoded(raw_image_message(
-        name, 2 * kImageColumns, repeated(uyvy, kImageColumns * kImageRows / 2))));
+        name, 2 * kImageColumns, text_repeated(uyvy, kImageColumns * kImageRows / 2))));
   expect_orange(decoded(raw_image_message("nv12", kImageColumns, below(u, v))));
   expect_orange(decoded(raw_image_message("nv21", kImageColumns, below(v, u))));
 }
@@ -75,27 +75,27 @@ TEST(PixelLayouts, DecodeColorDifferences) {
 TEST(PixelLayouts, MayHavePaddedRowsAndTrailingBytes) {
   const auto [y, u, v] = yuv_of(kOrange);
   const std::string padding(5, '\xAA');
-  const std::string row = repeated({char(30), char(120), char(220)}, kImageColumns) + padding;
+  const std::string row = text_repeated({char(30), char(120), char(220)}, kImageColumns) + padding;
   expect_orange(decoded(raw_image_message(
-      "bgr8", 3 * kImageColumns + 5, repeated(row, kImageRows) + std::string(777, 'x'))));
+      "bgr8", 3 * kImageColumns + 5, text_repeated(row, kImageRows) + std::string(777, 'x'))));
   const std::string luma = std::string(kImageColumns, y) + padding;
-  const std::string colors = repeated({u, v}, kImageColumns / 2) + padding;
-  expect_orange(decoded(
-      raw_image_message("nv12",
-                        kImageColumns + 5,
-                        repeated(luma, kImageRows) + repeated(colors, kImageRows / 2) + padding)));
+  const std::string colors = text_repeated({u, v}, kImageColumns / 2) + padding;
+  expect_orange(decoded(raw_image_message(
+      "nv12",
+      kImageColumns + 5,
+      text_repeated(luma, kImageRows) + text_repeated(colors, kImageRows / 2) + padding)));
 }
 
 TEST(PixelLayouts, DecodeBayerWithSixteenBits) {
   // Red, green / green, blue; little-endian.
   const auto row = [](int even, int odd) {
     const std::string pair = {char(even & 255), char(even >> 8), char(odd & 255), char(odd >> 8)};
-    return repeated(pair, kImageColumns / 2);
+    return text_repeated(pair, kImageColumns / 2);
   };
   const cv::Mat image =
       decoded(raw_image_message("bayer_rggb16",
                                 2 * kImageColumns,
-                                repeated(row(2200, 1200) + row(1200, 300), kImageRows / 2)));
+                                text_repeated(row(2200, 1200) + row(1200, 300), kImageRows / 2)));
   ASSERT_EQ(image.type(), CV_16UC3);
   EXPECT_EQ(image.at<cv::Vec3w>(6, 6), cv::Vec3w(300, 1200, 2200));
 }
