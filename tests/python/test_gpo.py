@@ -305,7 +305,7 @@ def test_report_has_the_result_of_the_command_line(tmp_path):
 
     def results(name):
         page = (tmp_path / name).read_text()
-        found = [json.loads(text) for text in re.findall(r'class="result"[^>]*>(.*?)</script>', page)]
+        found = [json.loads(text) for text in re.findall(r'class="result"[^>]*>(.*?)</script>', page, re.DOTALL)]
         return [(one["method"], one["plane"], one["frames"]) for one in found]
 
     assert len(results("python.html")) == 2
