@@ -68,10 +68,9 @@ Curve curve_of(const std::vector<Cell>& cells,
   return curve;
 }
 
-/// Returns whether anything of the curve can be drawn.
-bool has_points(const Curve& curve, bool logarithmic) {
-  return std::ranges::any_of(curve.y,
-                             [&](double y) { return std::isfinite(y) && (y > 0 || !logarithmic); });
+/// Returns whether any value of the curve is known.
+bool has_points(const Curve& curve) {
+  return std::ranges::any_of(curve.y, [](double y) { return std::isfinite(y); });
 }
 
 Curve bound_curve(const std::vector<Cell>& cells, const Configuration& configuration) {
@@ -92,7 +91,7 @@ Chart chart_of(const std::vector<Cell>& cells, const FigurePlan& plan, const Axi
               .logarithmic = axis.logarithmic};
   for (const Configuration& configuration : plan.configurations) {
     Curve curve = curve_of(cells, key_of(configuration), axis.column, axis.factor);
-    if (!has_points(curve, axis.logarithmic)) continue;
+    if (!has_points(curve)) continue;
     curve.name = title_of(configuration);
     curve.rgb = color_of(configuration);
     curve.marker = marker_of(configuration);
@@ -100,7 +99,7 @@ Chart chart_of(const std::vector<Cell>& cells, const FigurePlan& plan, const Axi
   }
   if (axis.column != std::string("pne_deg")) return chart;
   Curve bound = bound_curve(cells, plan.configurations.front());
-  if (has_points(bound, axis.logarithmic)) chart.curves.push_back(std::move(bound));
+  if (has_points(bound)) chart.curves.push_back(std::move(bound));
   return chart;
 }
 
@@ -126,7 +125,7 @@ std::vector<Cell> common_cells(std::span<const Row> rows, const FigurePlan& plan
 
 /// Returns whether the bound of a configuration is drawn.
 bool has_bound(const std::vector<Cell>& cells, const Configuration& configuration) {
-  return has_points(bound_curve(cells, configuration), true);
+  return has_points(bound_curve(cells, configuration));
 }
 
 /// Returns whether any window has an error, so that the residuals need not stand in for them.

@@ -25,7 +25,7 @@ std::string vector_text(const Vector3d& v, int digits) {
 }
 
 /// Returns a standard deviation of a direction; beyond a right angle it means nothing.
-std::string angle_text(double sigma_deg) {
+std::string text_of_sigma(double sigma_deg) {
   return sigma_deg > 90 ? "undetermined" : fmt::format("{:.3g} deg", sigma_deg);
 }
 
@@ -65,14 +65,14 @@ void add_planes(Numbers& numbers, const Inspection& inspection) {
   const auto& u = result.uncertainty;
   numbers.add("normal of the main plane",
               vector_text(result.plane.normal, 5),
-              u ? angle_text(u->normal_sigma_deg) : "unknown",
+              u ? text_of_sigma(u->normal_sigma_deg) : "unknown",
               u ? normal_parts(*u) : "the method states no uncertainty");
   for (const PlaneEstimate& one : result.planes) {
     if (one.number == inspection.window->leader) continue;
     const std::string name = plane_title(inspection, one.number);
     numbers.add("normal of " + name,
                 vector_text(one.plane.normal, 5),
-                one.normal_covariance ? angle_text(direction_sigma_deg(*one.normal_covariance))
+                one.normal_covariance ? text_of_sigma(direction_sigma_deg(*one.normal_covariance))
                                       : "unknown");
     numbers.add("distance of " + name,
                 fmt::format("{:.4f} d", one.plane.distance),
@@ -82,7 +82,7 @@ void add_planes(Numbers& numbers, const Inspection& inspection) {
     if (const auto name = plane_name(inspection, k))
       numbers.add(fmt::format("tilt of plane {}", k + 1),
                   fmt::format("{:.2f} deg from up", name->tilt_deg),
-                  angle_text(name->sigma_deg),
+                  text_of_sigma(name->sigma_deg),
                   name->name);
 }
 
@@ -128,7 +128,7 @@ void add_gravity_and_scale(Numbers& numbers, const Inspection& inspection) {
   if (inertial && inertial->ok)
     numbers.add("down, by the accelerometer",
                 vector_text(inertial->gravity_m_s2.normalized(), 4),
-                angle_text(inertial->gravity_sigma_deg));
+                text_of_sigma(inertial->gravity_sigma_deg));
   else if (inertial)
     numbers.add("down, by the accelerometer", "not found", "", inertial->reason);
   const auto scale = known_scale(inspection);
@@ -168,7 +168,7 @@ void add_errors(Numbers& numbers, const Inspection& inspection) {
   std::string position = "unknown", normal = "unknown";
   if (const auto truth = median_uncertainty(inspection.truth->uncertainties)) {
     position = fmt::format("{:.2g} mm", 1e3 * truth->position_sigma_m);
-    normal = angle_text(truth->normal_sigma_deg);
+    normal = text_of_sigma(truth->normal_sigma_deg);
   }
   const std::string about = "uncertainty of the ground truth, " + inspection.truth->source;
   if (e->ate_m) numbers.add("ATE", fmt::format("{:.2f} mm", 1e3 * *e->ate_m), position, about);
