@@ -386,10 +386,9 @@ void WorkbenchHost::save(const Screenshot& screenshot) {
   try {
     check_writable(file);
     if (screenshot.view == kReportView)
-      write_window_report(
-          state, file, [this](const auto& shown, const auto& view, cv::Size pixels) {
-            return draw_view(view, pixels, input().with(shown), size, {gui_, views_});
-          });
+      write_window_report(state, file, [this](const auto& shown, const auto& view, cv::Size px) {
+        return draw_view(view, px, input().with(shown), size, {gui_, views_});
+      });
     else
       write_image(file, image(screenshot.view, screenshot.size));
     say(state, "saved " + file.string());

@@ -91,7 +91,7 @@ Chart chart_of(const std::vector<Cell>& cells, const FigurePlan& plan, const Axi
               .logarithmic = axis.logarithmic};
   for (const Configuration& configuration : plan.configurations) {
     Curve curve = curve_of(cells, key_of(configuration), axis.column, axis.factor);
-    if (!has_points(curve)) continue;
+    if (curve.x.empty()) continue;
     curve.name = title_of(configuration);
     curve.rgb = color_of(configuration);
     curve.marker = marker_of(configuration);

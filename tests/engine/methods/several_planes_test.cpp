@@ -157,13 +157,15 @@ struct Curved {
 };
 
 /// Returns the root mean square angle between the surface normals at the points and their mean
-/// [deg].
+/// [deg]. Points beyond the surface's outline have no normal.
 double variation_deg(const Curved& curved, const std::vector<MapPoint>& points) {
   std::vector<Vector3d> normals;
   Vector3d sum = Vector3d::Zero();
   for (const MapPoint& point : points) {
     const Vector3d ray = point.position / point.position.z();
-    normals.push_back(curved.normal_at(ray / curved.inverse_depth(ray)));
+    const double inverse_depth = curved.inverse_depth(ray);
+    if (!(inverse_depth > 0)) continue;
+    normals.push_back(curved.normal_at(ray / inverse_depth));
     sum += normals.back();
   }
   double squares = 0;

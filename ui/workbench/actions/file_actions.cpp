@@ -7,6 +7,7 @@
 #include "engine/inspection/report/report.h"
 #include "ui/workbench/actions/actions.h"
 #include "ui/workbench/session/session_file.h"
+#include "ui/workbench/work/export_writer.h"
 
 #include <algorithm>
 
@@ -65,30 +66,20 @@ std::string path_text(const CameraPath& path, const Arguments& arguments) {
       path, arguments.size() > 1 ? choice<TrajectoryFormat>(arguments[1]) : TrajectoryFormat::tum);
 }
 
-/// Requests the result as the window shows it, cubes included.
-void export_as(State& state, const ExportFormat& format, const fs::path& path) {
-  if (!state.results.inspection) throw InputError("no result to export yet");
-  const ExportRequest request{&format, path};
-  check_export(request);
-  state.requests.exports.push_back(
-      {state.results.inspection,
-       {.metric = state.document.metric, .cube_side = state.document.cube_side},
-       request});
-}
-
 /// `export FORMAT PATH`: one command for each format, and one that lists them for an unknown one.
 void add_export_formats(const MenuRows& menu) {
   for (const ExportFormat& format : export_formats())
-    menu.add(
-        {fmt::format("export {}", format.key),
-         fmt::format("Export: {}", format.title),
-         format.help},
-        "PATH",
-        [&format](State& state, const Arguments& given) { export_as(state, format, given[0]); });
+    menu.add({fmt::format("export {}", format.key),
+              fmt::format("Export: {}", format.title),
+              format.help},
+             "PATH",
+             [&format](State& state, const Arguments& given) {
+               request_export(state, format, given[0]);
+             });
   menu.add({"export", "Export in a format", "Writes the result in a format, by its name"},
            "FORMAT PATH",
            [](State& state, const Arguments& given) {
-             export_as(state, export_format(given[0]), given[1]);
+             request_export(state, export_format(given[0]), given[1]);
            });
 }
 

@@ -71,4 +71,14 @@ void synchronize(WorkbenchState& state, ExportWriter& writer) {
   }
 }
 
+void request_export(WorkbenchState& state, const ExportFormat& format, const fs::path& path) {
+  if (!state.results.inspection) throw InputError("no result to export yet");
+  const ExportRequest request{&format, path};
+  check_export(request);
+  state.requests.exports.push_back(
+      {state.results.inspection,
+       {.metric = state.document.metric, .cube_side = state.document.cube_side},
+       request});
+}
+
 }  // namespace gpo

@@ -42,4 +42,8 @@ class ExportWriter {
 /// Starts the requested exports or cancels them, and reports the finished ones.
 void synchronize(WorkbenchState& state, ExportWriter& writer);
 
+/// Requests an export of the result as the window shows it, cubes included. Throws InputError
+/// without a result.
+void request_export(WorkbenchState& state, const ExportFormat& format, const fs::path& path);
+
 }  // namespace gpo
