@@ -40,7 +40,7 @@ class ByteCursor {
   explicit ByteCursor(std::string_view bytes) : bytes_(bytes) {}
 
   std::string_view take(std::uint64_t count) {
-    check_stop();
+    if (++taken_ % kTakenPerCheck == 0) check_stop();
     if (!ok_ || count > bytes_.size() - place_) {
       ok_ = false;
       return {};
@@ -66,8 +66,12 @@ class ByteCursor {
   std::size_t place() const { return place_; }
 
  private:
+  /// A check costs more than a field. A bag's records are fields of one cursor over their chunk.
+  static constexpr unsigned kTakenPerCheck = 64;
+
   std::string_view bytes_;
   std::size_t place_ = 0;
+  unsigned taken_ = 0;
   bool ok_ = true;
 };
 

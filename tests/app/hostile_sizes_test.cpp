@@ -10,12 +10,10 @@
 #include "tests/engine/test_folder.h"
 #include "ui/views/model/solid_model.h"
 
-#include <algorithm>
 #include <cstdlib>
 #include <ctime>
 #include <functional>
 
-#include <bzlib.h>
 #include <gmock/gmock.h>
 
 namespace gpo::test {
@@ -247,23 +245,6 @@ Outcome limited(const std::string& arguments) {
   return shell("ulimit -v 4000000; ulimit -t 20; timeout 20 '" GPO_PROGRAM "' " + arguments);
 }
 
-/// Returns how many times slower than the machine of the bounds this one is, at least 1: there
-/// bzip2 decompresses 64 MiB of zeros in `kReferenceSeconds` of processor time.
-double slowness() {
-  constexpr double kReferenceSeconds = 0.1;
-  static const double ratio = [] {
-    std::string plain(64 << 20, '\0'), packed(1 << 20, '\0');
-    auto packed_size = static_cast<unsigned>(packed.size());
-    BZ2_bzBuffToBuffCompress(packed.data(), &packed_size, plain.data(), 64 << 20, 9, 0, 0);
-    unsigned plain_size = 64 << 20;
-    const std::clock_t begin = std::clock();
-    BZ2_bzBuffToBuffDecompress(plain.data(), &plain_size, packed.data(), packed_size, 0, 0);
-    const double seconds = static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC;
-    return std::max(1.0, seconds / kReferenceSeconds);
-  }();
-  return ratio;
-}
-
 void expect_bounded(const std::vector<Hostile>& inputs, const RunBounds& bounds) {
   const bool own_process = std::getenv("GPO_HOSTILE") != nullptr;
   for (const auto& [name, arguments, message, write] : inputs) {
@@ -278,7 +259,7 @@ void expect_bounded(const std::vector<Hostile>& inputs, const RunBounds& bounds)
     const double seconds = static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC;
     if (!message.empty() || outcome.exit_code != 0) expect_refused(outcome, message);
     EXPECT_LT(outcome.peak_kib, bounds.kib);
-    EXPECT_LT(seconds, bounds.seconds * slowness());
+    EXPECT_LT(seconds, bounds.seconds);
     fs::remove_all(folder);
   }
 }

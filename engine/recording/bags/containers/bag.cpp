@@ -44,6 +44,8 @@ void check_sum_of(const FileBytes& file, const Chunk& chunk, const std::string& 
 }
 
 constexpr std::size_t kStep = std::size_t{1} << 18;
+/// A chunk's stated size may be wrong; larger ones grow step by step.
+constexpr std::size_t kMostReserved = std::size_t{1} << 26;
 
 struct Step {
   std::size_t read = 0;
@@ -57,6 +59,7 @@ template <class Decoder>
 Decompressed run(std::string_view stored, std::size_t most_bytes, Decoder&& step) {
   Decompressed result;
   std::string part(std::min(kStep, most_bytes + 1), '\0');
+  result.bytes.reserve(std::min(most_bytes, kMostReserved) + part.size());
   while (result.bytes.size() <= most_bytes) {
     check_stop();
     const Step done = step(stored, part);
