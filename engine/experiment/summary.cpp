@@ -114,6 +114,27 @@ std::vector<std::string> medians_of(const std::vector<Cell>& cells,
   return texts;
 }
 
+/// Cells of the lengths to show, from all windows and from those that all methods solved.
+struct Overview {
+  std::set<int> shown;  ///< numbers of frames
+  std::vector<Cell> cells;
+  std::vector<Cell> common_cells;
+  std::vector<NumberColumn> columns;
+  std::map<int, int> counts;  ///< common windows by number of frames
+};
+
+Overview overview_of(std::span<const Row> rows) {
+  const std::vector<Row> common = on_common_windows(rows);
+  Overview overview;
+  overview.shown = lengths_to_show(lengths_in(rows));
+  overview.cells = summarize(rows);
+  overview.common_cells = summarize(common);
+  overview.columns = error_columns_of(overview.cells);
+  overview.counts = common_counts(common);
+  for (const Cell& cell : overview.cells) overview.counts.try_emplace(cell.frames, 0);
+  return overview;
+}
+
 ordered_json cells_json(std::span<const Row> rows) {
   ordered_json cells = ordered_json::array();
   for (const Cell& cell : summarize(rows)) {
@@ -238,12 +259,7 @@ Table running_time_table(std::span<const Row> rows) {
 }
 
 Table overview_table(std::span<const Row> rows) {
-  const std::set<int> shown = lengths_to_show(lengths_in(rows));
-  const std::vector<Cell> cells = summarize(rows);
-  const std::vector<Row> common = on_common_windows(rows);
-  const std::vector<Cell> common_cells = summarize(common);
-  const std::vector<NumberColumn> columns = error_columns_of(cells);
-  std::map<int, int> counts = common_counts(common);
+  const auto [shown, cells, common_cells, columns, counts] = overview_of(rows);
   Table table;
   table.caption =
       "Medians over the windows of a length that all methods solved (`common`). `solved`: windows "
@@ -255,7 +271,7 @@ Table overview_table(std::span<const Row> rows) {
     std::vector<std::string> line{cell.configuration,
                                   std::to_string(cell.frames),
                                   windows_of(cell),
-                                  std::to_string(cell.ok > 0 ? counts[cell.frames] : 0)};
+                                  std::to_string(cell.ok > 0 ? counts.at(cell.frames) : 0)};
     for (const std::string& text : medians_of(common_cells, cell, columns)) line.push_back(text);
     table.lines.push_back(std::move(line));
   }
@@ -263,12 +279,7 @@ Table overview_table(std::span<const Row> rows) {
 }
 
 Table overview_numbers(std::span<const Row> rows) {
-  const std::set<int> shown = lengths_to_show(lengths_in(rows));
-  const std::vector<Cell> cells = summarize(rows);
-  const std::vector<Row> common = on_common_windows(rows);
-  const std::vector<Cell> common_cells = summarize(common);
-  const std::vector<NumberColumn> columns = error_columns_of(cells);
-  std::map<int, int> counts = common_counts(common);
+  const auto [shown, cells, common_cells, columns, counts] = overview_of(rows);
   Table table{.caption = {}, .header = {"method", "frames", "solved", "of"}, .lines = {}};
   for (const NumberColumn& column : columns) table.header.emplace_back(column.title);
   table.header.emplace_back("common");
@@ -281,7 +292,7 @@ Table overview_numbers(std::span<const Row> rows) {
                                   std::to_string(cell.ok),
                                   std::to_string(cell.windows)};
     for (const std::string& text : medians_of(cells, cell, columns)) line.push_back(text);
-    line.push_back(std::to_string(cell.ok > 0 ? counts[cell.frames] : 0));
+    line.push_back(std::to_string(cell.ok > 0 ? counts.at(cell.frames) : 0));
     for (const std::string& text : medians_of(common_cells, cell, columns)) line.push_back(text);
     std::ranges::replace(line, "-", "");
     table.lines.push_back(std::move(line));
