@@ -180,6 +180,9 @@ std::vector<Figure> figures(std::span<const Row> rows,
     Figure metric = metric_figure(rows, plan);
     if (!metric.charts.empty()) all.push_back(std::move(metric));
   }
+  for (Figure& figure : all)
+    for (Chart& chart : figure.charts)
+      std::erase_if(chart.curves, [](const Curve& curve) { return !has_points(curve); });
   return all;
 }
 
