@@ -228,6 +228,19 @@ void write_outputs(const RunArguments& run, const Inspection& inspection) {
   if (ok && run.points) write_output(*run.points, map_points_ply(inspection, world));
 }
 
+/// Names the requested files that a failure leaves out.
+void report_unwritten(const RunArguments& run) {
+  std::vector<std::string> unwritten;
+  if (run.trajectory) unwritten.emplace_back("--trajectory");
+  if (run.points) unwritten.emplace_back("--points");
+  for (const ExportRequest& request : run.exports)
+    unwritten.push_back(fmt::format("--export {}", request.format->key));
+  if (!unwritten.empty())
+    fmt::print(stderr,
+               "not written, because the initialization failed: {}\n",
+               fmt::join(unwritten, ", "));
+}
+
 int run_once(const RunArguments& run) {
   const InspectArguments& arguments = run.inspect;
   std::vector<NamedFile> outputs{{"--json", run.json},
@@ -255,8 +268,12 @@ int run_once(const RunArguments& run) {
   if (run.metric && !run.trajectory && !run.points && run.exports.empty())
     fmt::print(stderr, "--metric is not used. Neither trajectory nor points are written\n");
   write_outputs(run, *inspection);
-  if (inspection->initialization->ok) write_exports(run, *inspection, text);
-  return inspection->initialization->ok ? kDone : kFailed;
+  if (!inspection->initialization->ok) {
+    report_unwritten(run);
+    return kFailed;
+  }
+  write_exports(run, *inspection, text);
+  return kDone;
 }
 
 }  // namespace

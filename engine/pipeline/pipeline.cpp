@@ -65,9 +65,12 @@ void complete_verdict(const Window& window,
     verdict.scene = SceneKind::no_plane;
     result.verdict = std::move(verdict);
   }
-  if (!result.ok && result.verdict && result.verdict->readiness == Readiness::ready) {
-    result.verdict->readiness = Readiness::weak;
-    result.verdict->reason = "the method failed, although " + result.verdict->reason;
+  if (result.ok || !result.verdict) return;
+  Verdict& verdict = *result.verdict;
+  if (verdict.readiness == Readiness::weak) verdict.reason = "the method failed; " + verdict.reason;
+  if (verdict.readiness == Readiness::ready) {
+    verdict.readiness = Readiness::weak;
+    verdict.reason = "the method failed, although " + verdict.reason;
   }
 }
 

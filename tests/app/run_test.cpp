@@ -202,11 +202,15 @@ TEST(Run, FailedInitializationExitsOneWithoutPoses) {
   write_file(folder / "still.csv", tracks);
   const Outcome outcome = program(
       "run sequences/desk --rotations averaging --tracks {0}/still.csv --json {0}/r.json "
-      "--trajectory {0}/t.txt",
+      "--trajectory {0}/t.txt --export ply={0}/map.ply",
       folder);
   expect_exit(1, outcome, "failed: no parallax");
+  EXPECT_THAT(
+      outcome.err,
+      HasSubstr("not written, because the initialization failed: --trajectory, --export ply\n"));
   EXPECT_THAT(outcome.err, HasSubstr("--scan - lists the frames from which a window can be"));
   EXPECT_FALSE(fs::exists(folder / "t.txt"));
+  EXPECT_FALSE(fs::exists(folder / "map.ply"));
   const json j = read_json(folder / "r.json");
   EXPECT_EQ(j["status"], "failed");
   EXPECT_THAT(j["reason"], HasSubstr("no parallax"));

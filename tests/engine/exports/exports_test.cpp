@@ -32,6 +32,9 @@ TEST(Exports, UnknownFormatListsTheFormats) {
   EXPECT_THAT(error_of([] { parse_export("colmap"); }),
               HasSubstr("--export: found 'colmap', expected FORMAT=PATH with a format of colmap,"));
   EXPECT_THAT(error_of([] { parse_export("ply=-"); }), HasSubstr("expected a file or a folder"));
+  EXPECT_EQ(error_of([] { parse_export("colmap=model,gltf=a.glb"); }),
+            "--export: found 'colmap=model,gltf=a.glb', expected one FORMAT=PATH; repeat --export "
+            "for gltf");
   const ExportRequest request = parse_export("gltf=a=b.glb");
   EXPECT_STREQ(request.format->key, "gltf");
   EXPECT_EQ(request.path, "a=b.glb");

@@ -18,7 +18,7 @@
 namespace gpo::test {
 namespace {
 
-using testing::HasSubstr;
+using testing::HasSubstr, testing::StartsWith;
 
 TEST(Initialize, GivesTheSameBitsAsAnInspection) {
   const auto recording = desk();
@@ -95,6 +95,25 @@ TEST(Initialize, IsAtMostWeakWithAGuessedCameraAndReportsWhyAWindowFails) {
   EXPECT_EQ(initialized(simulate({.frames = 15})).why_not_ready(), "");
   EXPECT_EQ(WindowResult().why_not_ready(), "there is no verdict on the window");
   EXPECT_EQ(refused.initialization.cameras.size(), 0U);
+}
+
+// The verdict judges the window, so it may stand beside a method that failed.
+TEST(Initialize, SaysThatTheMethodFailedInTheVerdictOnItsWindow) {
+  const auto own = std::make_shared<Method>(find_method("pnp"));
+  own->key = "lost";
+  own->initialize = [](const Window&, const MethodOptions&, const Watch&) { return failed("lost"); };
+  const auto verdict_of = [&](int frames) {
+    const InitializeOptions options{.method = MethodChoice(own)};
+    const WindowResult result = initialized(simulate({.frames = frames}), options);
+    EXPECT_EQ(result.initialization.reason, "lost");
+    return result.initialization.verdict.value_or(Verdict{});
+  };
+  const Verdict good = verdict_of(15);
+  EXPECT_EQ(good.readiness, Readiness::weak);
+  EXPECT_THAT(good.reason, StartsWith("the method failed, although normal uncertainty"));
+  const Verdict weak = verdict_of(4);
+  EXPECT_EQ(weak.readiness, Readiness::weak);
+  EXPECT_THAT(weak.reason, StartsWith("the method failed; "));
 }
 
 TEST(Initialize, TakesTheRowDelayFromTheReadoutTimeOfTheCamera) {
