@@ -250,7 +250,7 @@ std::string field(const std::string& name, const std::string& field) {
 void make_and_unpack() {
   fs::remove_all(folder());
   const Outcome made =
-      shell("mkdir -p {0}/debs && cd {0}/debs && cpack --config {1}/CPackConfig.cmake -B .",
+      shell("mkdir -p {0}/debs && cd {0}/debs && cpack -D CPACK_DEBIAN_COMPRESSION_TYPE=gzip --config {1}/CPackConfig.cmake -B .",
             folder(),
             GPO_BINARY_DIR);
   ASSERT_EQ(made.exit_code, 0) << made.out << made.err;

@@ -107,7 +107,7 @@ TEST_P(MonkeyTest, SurvivesRandomInput) {
   std::filesystem::create_directories(kFolder / "files");
   std::filesystem::current_path(kFolder / "files");  // the actions write files
   setenv("XDG_STATE_HOME", (kFolder / "state").c_str(), 1);
-  const int turns = from_environment("GPO_MONKEY_TURNS", 300);
+  const int turns = from_environment("GPO_MONKEY_TURNS", 150);
   const auto seed = static_cast<unsigned>(GetParam() + from_environment("GPO_MONKEY_SEED", 0));
   Monkey monkey(seed);
   const std::vector<cv::Size> sizes = {
