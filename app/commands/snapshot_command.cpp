@@ -133,9 +133,8 @@ int run_script(const SnapshotArguments& snapshot, cv::Size size, OwnMethods& own
   const std::vector<ScriptLine> lines = read_script(*snapshot.script);
   OffscreenContext context(size.width, size.height);
   Gui gui;
-  WorkbenchHost host(gui,
-                     opener_for_window(arguments.cache_mib, arguments.recording, arguments.topics),
-                     example_recording());
+  WorkbenchHost host(
+      gui, opener_for_window(arguments.cache_mib, given_recording(arguments)), example_recording());
   host.timings = false;
   host.reads_models_at_once = true;
   host.size = size;

@@ -44,10 +44,10 @@ struct Session {
 
   Session(const InspectArguments& from, OwnMethods& methods)
       : own(methods),
-        host(gui,
-             opener_for_window(from.cache_mib, from.recording, from.topics),
-             example_recording(),
-             [] { glfwPostEmptyEvent(); }) {
+        host(
+            gui, opener_for_window(from.cache_mib, given_recording(from)), example_recording(), [] {
+              glfwPostEmptyEvent();
+            }) {
     own.log->on_change([] { glfwPostEmptyEvent(); });
     host.state.methods = own.table;
     host.link.read_methods = session_methods(own, [this](const OwnMethods& added) {
