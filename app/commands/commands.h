@@ -154,6 +154,7 @@ struct ReportRecording {
   fs::path path;
   std::shared_ptr<const Recording> recording;
   TopicChoices topics = {};
+  std::optional<fs::path> tracks = {};  ///< file that replaces the tracker; nullopt: none
 };
 
 struct ReportRequest {

@@ -181,6 +181,8 @@ int open_window(const ViewArguments& arguments, OwnMethods& own, Interrupt& inte
   host.link.remembers_files = true;
   host.link.calibrates = inspect.calibrate == "auto";
   host.state.files.asks = true;
+  host.state.files.given = inspect.recording;
+  host.state.files.given_topics = inspect.topics;
   host.state.files.recent = recent_files();
   host.state.files.has_last_session = fs::exists(last_session_file());
   const bool first_run = !host.state.files.has_last_session && host.state.files.recent.empty();
