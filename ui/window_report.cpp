@@ -7,6 +7,7 @@
 #include "engine/files/output_file.h"
 #include "engine/inspection/report/report.h"
 #include "engine/inspection/studies/studies.h"
+#include "ui/panels/facts/facts.h"
 #include "ui/views/report/report.h"
 
 namespace gpo {
@@ -20,13 +21,49 @@ std::string found_quickly(const Recording& recording) {
   return to_text(describe(recording));
 }
 
-std::string methods_text(const std::vector<Compared>& methods) {
-  std::string text;
-  for (const Compared& one : methods) text += (text.empty() ? "" : ",") + key_of(one.configuration);
-  return text;
+/// Returns the curves of the compared methods; no chart if the window is too short.
+Figure curves_figure(WorkbenchState state) {
+  const Settings& window = state.document.settings;
+  if (window.frames < kFewestFramesForCurves) return {};
+  state.results.experiment.reset();
+  state.view.hidden_curves.clear();
+  Figure figure = curve_facts(state).figure;
+  // Each length has one window, so its points are not drawn as few of many.
+  for (Chart& chart : figure.charts)
+    for (Curve& curve : chart.curves) curve.counts.clear();
+  figure.title = curves_title(state.document.recording->name, window.start);
+  return figure;
+}
+
+ReportCommand command_of(const WorkbenchState& state, const ReportSection& section) {
+  const Recording& recording = *section.inspection->recording;
+  ReportCommand command{
+      .recordings = {recording.path}, .opening = {}, .settings = section.inspection->settings};
+  const bool given = recording.path == state.files.given;
+  command.opening =
+      opening_options(recording, {}, given ? state.files.given_topics : TopicChoices{});
+  for (const Compared& one : section.methods) command.compared.push_back(one.configuration);
+  return command;
 }
 
 }  // namespace
+
+JobStatus report_status(const WorkbenchState& state) {
+  const std::vector<Settings> wanted = wanted_inspections(state);
+  const auto done = std::ranges::count_if(wanted, [&](const Settings& one) {
+    return find_surveyed(state.results.surveyed.get(), one) != nullptr;
+  });
+  return {true, "report", static_cast<int>(done), static_cast<int>(wanted.size())};
+}
+
+std::vector<Screenshot> take_screenshots(WorkbenchState& state, const WorkerLink& link) {
+  const bool waits = link.worker.busy || link.survey.busy || link.reading.busy;
+  std::vector<Screenshot> ready, waiting;
+  for (Screenshot& one : state.requests.screenshots)
+    (waits && one.view == kReportView ? waiting : ready).push_back(std::move(one));
+  state.requests.screenshots = std::move(waiting);
+  return ready;
+}
 
 void write_window_report(const WorkbenchState& state, const fs::path& file, const DrawState& draw) {
   const auto& inspection = state.results.inspection;
@@ -48,10 +85,9 @@ void write_window_report(const WorkbenchState& state, const fs::path& file, cons
   section.normals = draw(shown, "normals", {860, 780});
   for (const Compared& one : compared_results(state))
     if (one.inspection) section.methods.push_back(one);
-  section.figures = {growth_figure(*inspection)};
+  section.figures = {growth_figure(*inspection), curves_figure(state)};
   section.found = found_quickly(recording);
-  section.command =
-      report_command({recording.path}, inspection->settings, methods_text(section.methods));
+  section.command = report_command(command_of(state, section));
   write_file(file, report_page({.sections = {section}, .program = program_identity()}));
 }
 

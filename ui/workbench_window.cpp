@@ -315,6 +315,7 @@ WorkbenchHost::WorkbenchHost(Gui& gui,
 PanelInput WorkbenchHost::input() const {
   PanelInput input{state, link.reading.busy ? link.reading : link.worker, link.survey, link.scan};
   if (movie_) input.writing = {true, "movie", movie_->done(), movie_->of()};
+  if (!movie_ && wants_report(state)) input.writing = report_status(state);
   input.timings = timings;
   input.opening = link.loading;
   return input;
@@ -332,8 +333,7 @@ void WorkbenchHost::synchronize() {
   if (const auto copied = std::exchange(state.requests.copied, {}))
     ImGui::SetClipboardText(copied->c_str());
   if (writing()) write_movie();
-  for (const Screenshot& screenshot : std::exchange(state.requests.screenshots, {}))
-    save(screenshot);
+  for (const Screenshot& screenshot : take_screenshots(state, link)) save(screenshot);
 }
 
 void WorkbenchHost::settle() {

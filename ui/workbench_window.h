@@ -87,7 +87,9 @@ class WorkbenchHost {
 
   /// Exchanges results with the workers and fulfills requests, at most one frame of a movie.
   void synchronize();
-  bool busy() const { return link.busy() || movie_ || state.requests.movie || exporting(); }
+  bool busy() const {
+    return link.busy() || movie_ || state.requests.movie || exporting() || wants_report(state);
+  }
   /// Returns whether the next call of `synchronize` writes a frame of a movie.
   bool writing() const { return movie_ || (state.requests.movie && !link.busy()); }
   void settle();

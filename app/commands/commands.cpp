@@ -225,13 +225,19 @@ void find_method(InspectArguments& arguments, const MethodTable& methods) {
       with_setting(arguments.settings, "method", arguments.settings.options.method.key(), methods);
 }
 
+GivenRecording given_recording(const InspectArguments& arguments) {
+  const Settings& window = arguments.settings;
+  return {.path = arguments.recording,
+          .topics = arguments.topics,
+          .searched = {window.start, 2 * window.frames + 8}};
+}
+
 std::shared_ptr<const Recording> open(const InspectArguments& arguments) {
   const OpenOptions options{arguments.tracks, arguments.cache_mib << 20, {}, arguments.topics};
-  const Settings& window = arguments.settings;
   auto recording = open_given(arguments.recording,
                               options,
                               arguments.calibrate == "auto",
-                              {window.start, 2 * window.frames + 8});
+                              given_recording(arguments).searched);
   for (const std::string& note : recording->notes) fmt::print(stderr, "{}\n", note);
   return recording;
 }

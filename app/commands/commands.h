@@ -3,6 +3,7 @@
 #pragma once
 
 #include "app/methods/method_commands.h"
+#include "app/recordings/recordings.h"
 #include "app/terminal/terminal.h"
 #include "engine/base/chart.h"
 #include "engine/base/choice.h"
@@ -107,6 +108,9 @@ CLI::Option* add_tracks_and_recording(CLI::App& command, InspectArguments& argum
 /// Looks up the method of the settings, which may be one of the user's. Throws SettingError.
 void find_method(InspectArguments& arguments, const MethodTable& methods);
 
+/// Returns the recording of the arguments for the window, with the frames that it searches.
+GivenRecording given_recording(const InspectArguments& arguments);
+
 /// Opens the recording and prints its notes on standard error. Throws InputError.
 std::shared_ptr<const Recording> open(const InspectArguments& arguments);
 
@@ -150,6 +154,7 @@ struct ReportRecording {
   fs::path path;
   std::shared_ptr<const Recording> recording;
   TopicChoices topics = {};
+  std::optional<fs::path> tracks = {};  ///< file that replaces the tracker; nullopt: none
 };
 
 struct ReportRequest {

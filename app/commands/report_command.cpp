@@ -12,8 +12,6 @@
 namespace gpo {
 namespace {
 
-constexpr int kFewestFramesForCurves = 10;
-
 struct ReportArguments {
   InspectArguments inspect;
   std::vector<fs::path> further;
@@ -74,7 +72,11 @@ ReportSection section_of(const ReportRecording& opened,
   section.figures = report_figures(opened, *inspection, request, stop);
   section.found =
       to_text(found_in(opened.recording)) + to_text(describe_topics(opened.path, opened.topics));
-  section.command = report_command({opened.path}, base, request.methods.value_or(""));
+  section.command =
+      report_command({.recordings = {opened.path},
+                      .opening = opening_options(*opened.recording, opened.tracks, opened.topics),
+                      .settings = base,
+                      .compared = request.methods ? configurations : std::vector<Configuration>{}});
   return section;
 }
 
@@ -102,7 +104,7 @@ int write_report(const ReportArguments& arguments, const MethodTable& methods) {
   paths.insert(paths.end(), arguments.further.begin(), arguments.further.end());
   for (const fs::path& path : paths) {
     one.recording = path;
-    request.recordings.push_back({path, open(one), one.topics});
+    request.recordings.push_back({path, open(one), one.topics, one.tracks});
   }
   const WrittenReport report = make_report(request, current_stop());
   const auto configurations = reported_configurations(request);

@@ -9,6 +9,7 @@
 #include "engine/files/text_file.h"
 #include "engine/methods/methods.h"
 #include "engine/recording/images/images.h"
+#include "ui/views/report/report.h"
 #include "ui/views/snapshot.h"
 #include "ui/workbench_window.h"
 
@@ -133,9 +134,8 @@ int run_script(const SnapshotArguments& snapshot, cv::Size size, OwnMethods& own
   const std::vector<ScriptLine> lines = read_script(*snapshot.script);
   OffscreenContext context(size.width, size.height);
   Gui gui;
-  WorkbenchHost host(gui,
-                     opener_for_window(arguments.cache_mib, arguments.recording, arguments.topics),
-                     example_recording());
+  WorkbenchHost host(
+      gui, opener_for_window(arguments.cache_mib, given_recording(arguments)), example_recording());
   host.timings = false;
   host.reads_models_at_once = true;
   host.size = size;
@@ -143,6 +143,8 @@ int run_script(const SnapshotArguments& snapshot, cv::Size size, OwnMethods& own
   host.state.methods = own.table;
   host.link.read_methods = session_methods(own, report_not_started);
   host.link.calibrates = arguments.calibrate == "auto";
+  host.state.files.given = arguments.recording;
+  host.state.files.given_topics = arguments.topics;
   if (!arguments.recording.empty()) host.state.requests.open = arguments.recording;
   run_script_line(host, context, "");
   for (const ScriptLine& line : lines) {
@@ -272,8 +274,7 @@ Figure curves_over_length(const std::shared_ptr<const Recording>& recording,
   // One window per length was requested here, so its points are not drawn as few of many.
   for (Chart& chart : figure.charts)
     for (Curve& curve : chart.curves) curve.counts.clear();
-  figure.title =
-      fmt::format("{}: windows from frame {} over their length", recording->name, window.start);
+  figure.title = curves_title(recording->name, window.start);
   for (const Configuration& configuration : plan.configurations) {
     const auto own = rows_of(rows, {&configuration, 1});
     const bool solved = std::ranges::any_of(own, &Row::ok);

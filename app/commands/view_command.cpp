@@ -44,10 +44,10 @@ struct Session {
 
   Session(const InspectArguments& from, OwnMethods& methods)
       : own(methods),
-        host(gui,
-             opener_for_window(from.cache_mib, from.recording, from.topics),
-             example_recording(),
-             [] { glfwPostEmptyEvent(); }) {
+        host(
+            gui, opener_for_window(from.cache_mib, given_recording(from)), example_recording(), [] {
+              glfwPostEmptyEvent();
+            }) {
     own.log->on_change([] { glfwPostEmptyEvent(); });
     host.state.methods = own.table;
     host.link.read_methods = session_methods(own, [this](const OwnMethods& added) {
@@ -181,6 +181,8 @@ int open_window(const ViewArguments& arguments, OwnMethods& own, Interrupt& inte
   host.link.remembers_files = true;
   host.link.calibrates = inspect.calibrate == "auto";
   host.state.files.asks = true;
+  host.state.files.given = inspect.recording;
+  host.state.files.given_topics = inspect.topics;
   host.state.files.recent = recent_files();
   host.state.files.has_last_session = fs::exists(last_session_file());
   const bool first_run = !host.state.files.has_last_session && host.state.files.recent.empty();

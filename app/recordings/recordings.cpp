@@ -258,16 +258,15 @@ std::shared_ptr<const Recording> open_given(const fs::path& path,
                 [&] { return open_resolved(path, folder, watched, calibrates, searched); });
 }
 
-Worker::Open opener_for_window(std::size_t cache_mib,
-                               const std::optional<fs::path>& recording,
-                               const TopicChoices& topics) {
+Worker::Open opener_for_window(std::size_t cache_mib, const GivenRecording& given) {
   return [=](const fs::path& path, const std::stop_token&, const Progress& progress) {
     OpenOptions options{.tracks = {}, .cache_bytes = cache_mib << 20};
-    if (path == recording) options.topics = topics;
+    const GivenRecording of = path == given.path ? given : GivenRecording{path};
+    options.topics = of.topics;
     options.progress = in_percent(path, progress);
     const fs::path folder = folder_for_window(path, progress);
     const auto open = [=](const OpenOptions& how) {
-      return open_resolved(path, folder, how, false);
+      return open_resolved(path, folder, how, false, of.searched);
     };
     OpenOptions first = options;
     first.first_frames = kFirstFrames;

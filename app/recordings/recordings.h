@@ -22,10 +22,16 @@ std::shared_ptr<const Recording> open_given(const fs::path& path,
                                             bool calibrates = false,
                                             const SearchedFrames& searched = {});
 
-/// Does the same for the window's worker, with a calibration on request; `topics` of `recording`.
-Worker::Open opener_for_window(std::size_t cache_mib,
-                               const std::optional<fs::path>& recording = {},
-                               const TopicChoices& topics = {});
+/// A recording on the command line, and what its options say about it.
+struct GivenRecording {
+  fs::path path;  ///< empty: none
+  TopicChoices topics = {};
+  SearchedFrames searched = {};  ///< frames to search for faults
+};
+
+/// Does the same for the window's worker, with a calibration on request; other recordings than the
+/// given one have no options.
+Worker::Open opener_for_window(std::size_t cache_mib, const GivenRecording& given);
 
 /// Returns the file of the program that runs commands which draw.
 std::filesystem::path drawing_program();

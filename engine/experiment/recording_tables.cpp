@@ -133,7 +133,7 @@ std::string latex_float(const RecordingTable& table) {
   for (const std::string& title : table.titles) titles.push_back(latex_text(title));
   std::string text = fmt::format(
       "\\begin{{table*}}\n"
-      "  \\centering\n"
+      "  \\centering\\footnotesize\\setlength{{\\tabcolsep}}{{3pt}}\n"
       "  \\caption{{Median and quartiles of the errors over the windows of {0} frames that all "
       "methods solved.}}\n"
       "  \\label{{tab:errors-{0}}}\n"

@@ -173,9 +173,24 @@ std::optional<Vector3d> point_on_plane(const Inspection& inspection,
   return intersect(plane, cameras[frame], ray);
 }
 
+ScaleSource scale_source(const Inspection& inspection) {
+  if (inspection.measured_scale) return ScaleSource::points;
+  const auto& imported = inspection.imported;
+  return imported && imported->meters_per_unit ? ScaleSource::result : ScaleSource::accelerometer;
+}
+
+std::optional<double> scale_log_sigma(const Inspection& inspection) {
+  if (!known_scale(inspection)) return std::nullopt;
+  const ScaleSource source = scale_source(inspection);
+  if (source == ScaleSource::points) return inspection.measured_scale->log_sigma;
+  if (source == ScaleSource::result) return std::nullopt;
+  return inspection.inertial->log_scale_sigma;
+}
+
 std::optional<double> known_scale(const Inspection& inspection) {
   if (const auto& measured = inspection.measured_scale)
     return measured->reason.empty() ? std::optional(measured->meters_per_unit) : std::nullopt;
+  if (scale_source(inspection) == ScaleSource::result) return inspection.imported->meters_per_unit;
   const auto& inertial = inspection.inertial;
   const bool known = inertial && inertial->ok && inertial->scale_known;
   return known ? std::optional(inertial->scale) : std::nullopt;

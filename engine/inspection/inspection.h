@@ -5,6 +5,7 @@
 #include "engine/evaluation/evaluation.h"
 #include "engine/inertial/inertial_alignment.h"
 #include "engine/inspection/settings/settings_table.h"
+#include "engine/methods/recording_method.h"
 
 #include <algorithm>
 
@@ -113,6 +114,7 @@ struct Inspection {
   /// Frame of the window from which on the metric scale is available; nullopt if it is not.
   std::optional<int> metric_scale_from;
   std::optional<MeasuredScale> measured_scale = {};  ///< nullopt if it is not requested
+  std::optional<ImportedResult> imported = {};       ///< nullopt unless another program's result
   std::optional<ChosenWorld> chosen_world = {};      ///< nullopt if it is not requested
   /// Verdicts of the windows of 2, 3, ... frames from the same start, as the window grows.
   std::vector<Verdict> growth;
@@ -150,8 +152,24 @@ std::optional<Eigen::Vector3d> point_on_plane(const Inspection& inspection,
                                               const Eigen::Vector2d& raw_px,
                                               const Plane& plane);
 
-/// Returns the meters per unit of the estimate: by two points if they are given, else by the
-/// accelerometer; nullopt if neither determines them.
+/// The source of a metric scale: two points, the unit of an imported result, or the accelerometer.
+enum class ScaleSource { points, result, accelerometer };
+
+template <>
+struct ChoiceKeys<ScaleSource> {
+  static constexpr const char* name = "scale source";
+  static constexpr std::array keys{"points", "result", "accelerometer"};
+};
+
+/// Returns the source of the scale: two points if they are given, else the unit of an imported
+/// metric result, else the accelerometer, even if it does not determine the scale.
+ScaleSource scale_source(const Inspection& inspection);
+
+/// Returns the standard deviation of the logarithm of a known scale; nullopt if it is unknown.
+std::optional<double> scale_log_sigma(const Inspection& inspection);
+
+/// Returns the meters per unit of the estimate by `scale_source`; nullopt if it does not determine
+/// them.
 std::optional<double> known_scale(const Inspection& inspection);
 /// Returns the same; throws InputError with the reason if it is unknown.
 double meters_per_unit(const Inspection& inspection);

@@ -147,7 +147,6 @@ struct Inspector::Stages {
   Cached<Settings, WindowRotations> rotations;
   Cached<Settings, std::vector<Verdict>> growth;
   std::optional<RecordingFacts> facts;
-  std::optional<double> own_scale;  // meters per unit of the last result, if it is metric
 
   bool update_tracks(const Request& request) {
     const Settings& settings = request.settings;
@@ -200,14 +199,14 @@ struct Inspector::Stages {
     InitializeOptions options = settings.options;
     if (recording->camera_source == CameraSource::guess) options.camera_is_guess = true;
     ImportedResult imported;
-    bind_to_recording(options.method, imported);
+    const bool imports = bind_to_recording(options.method, imported);
     Window window = with_rotations(*outliers.value, given, options);
     const Sources sources = sources_of(*recording, window, rotations.value);
     const auto begin = std::chrono::steady_clock::now();
     Initialization found =
         run_method(window, given, sources, options, watch_of(settings, stop, progress));
     inspection.timing = timing(settings, milliseconds_since(begin), found.solver.milliseconds);
-    own_scale = imported.meters_per_unit;
+    if (imports) inspection.imported = imported;
     add_own_noise(window, sources, options, stop, found);
     if (!given.R_wc.empty()) {
       Settings acting = *rotations.key;
@@ -239,12 +238,15 @@ struct Inspector::Stages {
     inspection.window = std::make_shared<const Window>(std::move(window));
     inspection.initialization =
         std::make_shared<const Initialization>(std::move(end.initialization));
+    if (inspection.imported && !inspection.initialization->ok)
+      inspection.imported->meters_per_unit.reset();
   }
 
   /// A result of another program may have other files for each recording, and needs its clock.
-  void bind_to_recording(MethodChoice& method, ImportedResult& imported) {
+  /// Returns whether the method is such a result.
+  bool bind_to_recording(MethodChoice& method, ImportedResult& imported) {
     const RecordingMethod* result = recording_method(method.row());
-    if (result == nullptr) return;
+    if (result == nullptr) return false;
     if (!facts) facts = recording_facts(*recording);
     Method bound = method.row();
     bound.initialize_from = [initialize = result->bind(*facts), &imported](
@@ -252,6 +254,7 @@ struct Inspector::Stages {
       return initialize(window, sources, imported);
     };
     method = MethodChoice(std::make_shared<const Method>(std::move(bound)));
+    return true;
   }
 
   Timing timing(const Settings& settings, double initialize_ms, double optimize_ms) const {
@@ -305,9 +308,7 @@ std::shared_ptr<const Inspection> Inspector::inspect(const Settings& settings,
       if (!main_plane_is_true)
         e.pne_deg = e.pne_aligned_deg = e.pde_m = e.pne_bound_deg = std::nullopt;
       if (inspection.inertial) compare(*inspection.inertial, *inspection.truth, e);
-      // A metric result has its own scale; the accelerometer's would be another result.
-      const bool own = stages.own_scale && !inspection.measured_scale;
-      if (const auto scale = own ? stages.own_scale : known_scale(inspection); scale && e.scale)
+      if (const auto scale = known_scale(inspection); scale && e.scale)
         e.scale_error_percent = 100 * (*scale / *e.scale - 1);
     }
     const auto place = [&](const Plane& plane, const Pose& reference) {

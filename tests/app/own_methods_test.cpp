@@ -299,6 +299,59 @@ TEST(Result, RefusesBadFilesBeforeAnyWork) {
   }
 }
 
+/// Writes the true cameras of the desk as a TUM trajectory of a larger scale whose clock is early.
+void write_scaled_trajectory(const fs::path& file, double scale, double early_s) {
+  succeeding("run {} --frames 60 --true-trajectory {}", kDesk, file);
+  std::istringstream rows(read_file(file));
+  std::string text;
+  for (std::string row; std::getline(rows, row);) {
+    const auto v = split(row + " ", ' ');
+    if (row.starts_with('#')) continue;
+    text += fmt::format("{:.9f}", std::stod(v[0]) - early_s);
+    for (int k = 1; k < 4; ++k) text += fmt::format(" {:.9f}", scale * std::stod(v[k]));
+    for (int k = 4; k < 8; ++k) text += " " + v[k];
+    text += "\n";
+  }
+  write_file(file, text);
+}
+
+TEST(ResultOfOthers, HasItsOwnScaleAndTimeOffsetInJsonAndExports) {
+  const fs::path folder = fresh_folder();
+  write_scaled_trajectory(folder / "slam.txt", 1.02, 0.02);
+  const std::string metric = fmt::format(
+      "{} --method slam --result slam={}/slam.txt,scale=metric,offset=auto", kDesk, folder);
+  const json result =
+      run_json("{0} --metric --trajectory {1}/a.txt --true-trajectory {1}/b.txt", metric, folder);
+  EXPECT_NEAR(result["imported"]["time_offset_s"], 0.02, 1e-5);
+  EXPECT_EQ(result["imported"]["applied_time_offset_s"], result["imported"]["time_offset_s"]);
+  EXPECT_GT(result["imported"]["time_offset_sigma_s"], 0);
+  EXPECT_EQ(result["metric_scale"]["source"], "result");
+  EXPECT_EQ(result["metric_scale"]["sigma"], nullptr);
+  EXPECT_EQ(result["metric_scale"]["meters_per_unit"], result["imported"]["meters_per_unit"]);
+  EXPECT_NEAR(result["metrics"]["scale_error_percent"], 2, 1e-3);
+  EXPECT_NE(result["inertial"]["scale"], result["metric_scale"]["meters_per_unit"]);
+  const auto length_of = [](const fs::path& file) {
+    std::istringstream rows(read_file(file));
+    std::vector<Eigen::Vector3d> centers;
+    for (std::string row; std::getline(rows, row);) {
+      const auto v = split(row + " ", ' ');
+      if (!row.starts_with('#'))
+        centers.emplace_back(std::stod(v[1]), std::stod(v[2]), std::stod(v[3]));
+    }
+    return (centers.back() - centers.front()).norm();
+  };
+  EXPECT_NEAR(length_of(folder / "a.txt") / length_of(folder / "b.txt"), 1.02, 1e-5);
+  write_file(folder / "script", fmt::format("metric on\nexport trajectory {}/c.txt\n", folder));
+  succeeding("snapshot {} --script {}/script", metric, folder);
+  EXPECT_NEAR(length_of(folder / "c.txt") / length_of(folder / "b.txt"), 1.02, 1e-5);
+  const json free =
+      run_json("{} --method slam --result slam={}/slam.txt,offset=0.02", kDesk, folder);
+  EXPECT_EQ(free["metric_scale"]["source"], "accelerometer");
+  EXPECT_EQ(free["imported"]["meters_per_unit"], nullptr);
+  EXPECT_EQ(free["imported"]["applied_time_offset_s"], 0.02);
+  EXPECT_LT(std::abs(free["metrics"]["scale_error_percent"].get<double>()), 1.5);
+}
+
 TEST(ResultOfOthers, ProposesBodyPosesWhereTheyFitFarBetter) {
   const fs::path folder = fresh_folder();
   std::istringstream rows(read_file(desk() / "mav0/state_groundtruth_estimate0/data.csv"));

@@ -82,6 +82,22 @@ TEST(Report, ComparesMethodsAndRecordings) {
       AllOf(HasSubstr("#recording-2"), HasSubstr("<th>desk</th>"), HasSubstr("<th>other</th>")));
 }
 
+TEST(Report, NamesTheCommandThatReproducesIt) {
+  const fs::path folder = fresh_folder();
+  std::string tracks = "frame,track,x,y\n";
+  for (int frame = 0; frame < 8; ++frame)
+    for (int k = 0; k < 30; ++k) tracks += fmt::format("{},{},{},{}\n", frame, k, 20 * k, 7 * k);
+  write_file(folder / "tracks.csv", tracks);
+  const std::string options = fmt::format(
+      "--tracks {}/tracks.csv --frames 8 --method orb --result orb={}/tests/app/"
+      "results/CameraTrajectory.txt",
+      folder,
+      GPO_SOURCE_DIR);
+  program("report {} {} --output {}/a.html", kDesk, options, folder);
+  const std::string page = read_file(folder / "a.html");
+  EXPECT_THAT(page, HasSubstr(fmt::format("desk {} --output report.html", options)));
+}
+
 TEST(Report, EscapesTheNameOfARecording) {
   const fs::path folder = fresh_folder();
   const std::string name = "<img src=x onerror=alert(1)>&\"";
@@ -120,6 +136,13 @@ TEST(Report, IsWrittenByAScriptOfTheWindow) {
   const std::string page = read_file(folder / "window.html");
   expect_self_contained(page);
   EXPECT_EQ(results_in(page)[0]["window"]["frames"], 12);
+  const std::string command = reported(kDesk + " --frames 12 --methods gpo_joint,gpo,pnp_ba,ba,pba",
+                                       folder / "command.html");
+  for (const std::string& one : {page, command}) {
+    EXPECT_EQ(results_in(one).size(), 5U);
+    EXPECT_THAT(one, HasSubstr("<figure class=\"charts-3\"><img"));
+    EXPECT_THAT(one, HasSubstr("desk: windows from frame 0 over their length"));
+  }
   write_file(folder / "bad", "report a.png\n");
   expect_exit(2,
               program("snapshot {} --script {}", kDesk, folder / "bad"),

@@ -1,15 +1,20 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
 // Recordings that people brought: photos with EXIF, boards, gaps and wrong clocks of an IMU.
+#include "engine/files/output_file.h"
 #include "engine/recording/companions/companion_files.h"
 #include "tests/app/program.h"
 
+#include <cmath>
+
+#include <fmt/format.h>
 #include <gmock/gmock.h>
+#include <opencv2/core.hpp>
 
 namespace gpo::test {
 namespace {
 
-using testing::HasSubstr;
+using testing::HasSubstr, testing::Not;
 
 fs::path case_folder(const std::string& name) { return shared("cases/" + name); }
 
@@ -31,6 +36,28 @@ TEST(SensorCases, PhotosCalibrateAlikeWhateverTheirOrientationInExif) {
     EXPECT_NEAR(camera.fx, first->fx, 1e-3) << name;
     EXPECT_NEAR(camera.cy, first->cy, 1e-3) << name;
   }
+}
+
+TEST(SensorCases, ARepeatedFrameLateInALongRecordingIsLeftOutByTheWindowAndByRun) {
+  const fs::path folder = fresh_folder(), images = folder / "images";
+  fs::create_directories(images);
+  constexpr int kFrames = 430, kRepeated = 410;
+  for (int i = 0; i < kFrames; ++i) {
+    const int shown = i == kRepeated ? i - 1 : i;
+    cv::Mat image(48, 64, CV_8UC3);
+    cv::RNG random(static_cast<std::uint64_t>(shown + 1));
+    for (int y = 0; y < image.rows; ++y)
+      for (int x = 0; x < image.cols; ++x)
+        image.at<cv::Vec3b>(y, x) = cv::Vec3b::all(cv::saturate_cast<std::uint8_t>(
+            120 + 50 * std::sin(0.4 * (x + shown)) * std::cos(0.3 * y) + random.gaussian(1)));
+    write_image(images / fmt::format("{:04}.png", i), image);
+  }
+  write_file(folder / "script", "frames 8\n");
+  constexpr const char* kNote = "1 of 430 frames are left out: 1 (410) repeat the image before";
+  EXPECT_THAT(program("run {} --start 400 --frames 12", images).err, HasSubstr(kNote));
+  const std::string window = " --frames 12 --script " + (folder / "script").string();
+  EXPECT_THAT(program("snapshot {} --start 400 {}", images, window).out, HasSubstr(kNote));
+  EXPECT_THAT(program("snapshot {} --start 200 {}", images, window).out, Not(HasSubstr(kNote)));
 }
 
 TEST(SensorCases, SquaresCountedInsteadOfCornersGetAHint) {

@@ -290,6 +290,30 @@ def test_evaluate_returns_a_structured_array():
     assert row["pne_deg"][0] == one.metrics["pne_deg"]
 
 
+def test_evaluate_reads_results_of_other_programs(tmp_path):
+    program("run", DESK, "--frames", "60", "--true-trajectory", str(tmp_path / "desk.txt"))
+    for result in (f"slam={tmp_path}/{{recording}}.txt,scale=metric", {"slam": tmp_path / "desk.txt"}):
+        rows = gpo.evaluate([DESK], methods="gpo,slam", result=result, lengths="10:20:10", starts="0")
+        assert list(rows["configuration"]) == ["gpo", "slam", "gpo", "slam"]
+        slam = rows[rows["configuration"] == "slam"]
+        assert (slam["status"] == "ok").all()
+        assert (slam["ate_m"] < 1e-6).all()
+        assert (rows["ate_m"][rows["configuration"] == "gpo"] > 1e-6).all()
+    with pytest.raises(gpo.InputError, match="no such file"):
+        gpo.evaluate([DESK], methods="slam", result=f"slam={tmp_path}/none.txt")
+
+
+def test_result_names_the_clock_and_scale_of_an_imported_result(tmp_path):
+    program("run", DESK, "--frames", "60", "--true-trajectory", str(tmp_path / "desk.txt"))
+    found = gpo.run(DESK, method="slam", result=f"slam={tmp_path}/desk.txt,scale=metric,offset=auto")
+    imported = found.to_dict()["json"]["imported"]
+    assert imported == found.json["imported"]
+    assert imported["time_offset_s"] == pytest.approx(0, abs=1e-4)
+    assert imported["applied_time_offset_s"] == imported["time_offset_s"]
+    assert found.json["metric_scale"]["source"] == "result"
+    assert abs(found.metrics["scale_error_percent"]) < 0.01
+
+
 @pytest.mark.parametrize("view", ["image", "scene", "compare"])
 def test_snapshot_is_identical_to_the_command_line(view, tmp_path):
     file = tmp_path / "view.png"

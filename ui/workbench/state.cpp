@@ -359,7 +359,8 @@ std::vector<int> curve_lengths(int frames) {
 std::vector<Settings> wanted_inspections(const WorkbenchState& state) {
   std::vector<Settings> wanted = orientation_settings(state);
   if (!state.document.recording) return wanted;
-  const PaneNeeds needs = needs_of(state.view.panes);
+  PaneNeeds needs = needs_of(state.view.panes);
+  if (wants_report(state)) needs.compared = needs.lengths = true;
   if (!needs.compared) {
     if (const auto other = flipped_settings(state)) wanted.push_back(*other);
     return wanted;

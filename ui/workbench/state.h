@@ -7,6 +7,7 @@
 #include "engine/inspection/inspection.h"
 #include "engine/inspection/settings/settings_table.h"
 #include "engine/inspection/studies/studies.h"
+#include "engine/recording/bags/messages.h"
 #include "engine/recording/recording.h"
 #include "engine/window/tracks.h"
 #include "ui/look/look.h"
@@ -85,10 +86,13 @@ struct LogLine {
   std::string text;  ///< one line
 };
 
+/// View of a `Screenshot` that is written as an HTML report.
+inline constexpr const char* kReportView = "report";
+
 /// An image of the window or of one view, waiting to be written.
 struct Screenshot {
   fs::path file;                      ///< .png; empty: a free name in the current folder
-  std::string view = "window";        ///< a name of `panes()`
+  std::string view = "window";        ///< a name of `panes()`, or `kReportView`: .html
   std::optional<cv::Size> size = {};  ///< nullopt: as large as shown
 };
 
@@ -213,6 +217,8 @@ struct SessionFiles {
   fs::path session_file;                        ///< last saved to; empty: not yet
   std::optional<SavedSession> waiting_session;  ///< continues when its recording is open
   std::vector<fs::path> recent;                 ///< opened before, the latest first
+  fs::path given;                               ///< on the command line; empty: none
+  TopicChoices given_topics;                    ///< its topics on the command line
   bool has_last_session = false;                ///< `continue` has something to open
 };
 
@@ -309,8 +315,14 @@ std::vector<Compared> orientation_results(const WorkbenchState& state);
 /// The window lengths of the curves, the longest first: `frames`, then multiples of five.
 std::vector<int> curve_lengths(int frames);
 
-/// The inspections that the open views need, at shorter lengths, too, if the curves are open.
+/// The inspections that the open views need, at shorter lengths, too, if the curves are open or a
+/// report waits for them.
 std::vector<Settings> wanted_inspections(const WorkbenchState& state);
+
+/// Returns whether a report waits for its inspections.
+inline bool wants_report(const WorkbenchState& state) {
+  return std::ranges::count(state.requests.screenshots, kReportView, &Screenshot::view) > 0;
+}
 
 /// The current result first, then the computed compared ones of the same window. Empty before.
 std::vector<ShownResult> shown_results(const WorkbenchState& state);

@@ -83,7 +83,7 @@ Settings settings_used(const Inspection& inspection);
 /// Returns the quaternion of a rotation, w last and not negative.
 Eigen::Vector4d quaternion_xyzw(const Eigen::Matrix3d& R);
 
-/// Adds `metric_scale` and `world` to a result if they are known or requested.
+/// Adds `imported`, `metric_scale` and `world` to a result if they are known or requested.
 void add_world(const Inspection& inspection, nlohmann::ordered_json& json);
 
 /// Returns a setting's value; null if it is left to the method.

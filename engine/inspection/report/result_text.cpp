@@ -63,12 +63,11 @@ std::string normal_text(const Uncertainty& u, CameraSource source) {
                        guess ? "a guess, assumed exact" : "exact",
                        sigma_text(*u.typical_lens_sigma_deg, 3),
                        rotations);
-  return fmt::format("normal {} (1 sigma; rotations {}, lens {})",
-                     sigma_text(u.normal_sigma_deg, 3),
-                     rotations,
-                     u.lens_sigma_deg.value_or(0) > 0
-                         ? fmt::format("{:.3f} deg of it", *u.lens_sigma_deg)
-                         : "exact");
+  return fmt::format(
+      "normal {} (1 sigma; rotations {}, lens {})",
+      sigma_text(u.normal_sigma_deg, 3),
+      rotations,
+      u.lens_sigma_deg.value_or(0) > 0 ? sigma_text(*u.lens_sigma_deg, 3) + " of it" : "exact");
 }
 
 std::string uncertainty_text(const Initialization& result, CameraSource source) {
@@ -112,19 +111,23 @@ std::string inertial_text(const Inspection& inspection) {
              fmt::join(down, " "),
              sigma_text(inertial->gravity_sigma_deg, 2),
              inertial->joint ? "; together with the planes" : "") +
-         (inspection.measured_scale ? ""
-          : inertial->scale_known   ? row("scale",
+         (scale_source(inspection) != ScaleSource::accelerometer ? ""
+          : inertial->scale_known                                ? row("scale",
                                         "+- {:.1f} %; the plane is {:.3f} m away{}",
                                         100 * inertial->log_scale_sigma,
                                         inertial->scale * plane.distance,
                                         since)
-                                    : row("scale", inertial->scale_reason)) +
+                                  : row("scale", inertial->scale_reason)) +
          planes_text(inspection);
 }
 
-/// Rows of the scale that two points determine, and of the chosen world.
+/// Rows of the scale that two points or an imported result determine, and of the chosen world.
 std::string chosen_text(const Inspection& inspection) {
   std::string text;
+  if (scale_source(inspection) == ScaleSource::result)
+    text += row("scale",
+                "by the unit of the result; the plane is {:.3f} m away",
+                *known_scale(inspection) * inspection.initialization->plane.distance);
   if (const auto& scale = inspection.measured_scale) {
     const double meters = scale->meters_per_unit * inspection.initialization->plane.distance;
     const std::string sigma =

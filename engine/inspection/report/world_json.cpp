@@ -17,13 +17,19 @@ ordered_json numbers(const auto& v) {
 
 /// Returns the scale and its source; null with the reason if two points do not determine it.
 ordered_json metric_scale_json(const Inspection& inspection) {
-  const auto& measured = inspection.measured_scale;
-  ordered_json json = {{"source", measured ? "points" : "accelerometer"},
-                       {"meters_per_unit", optional_json(known_scale(inspection))}};
-  json["sigma"] = measured ? optional_json(measured->log_sigma)
-                           : ordered_json(inspection.inertial->log_scale_sigma);
-  if (measured) json["reason"] = measured->reason;
+  ordered_json json = {{"source", to_string(scale_source(inspection))},
+                       {"meters_per_unit", optional_json(known_scale(inspection))},
+                       {"sigma", optional_json(scale_log_sigma(inspection))}};
+  if (const auto& measured = inspection.measured_scale) json["reason"] = measured->reason;
   return json;
+}
+
+ordered_json imported_json(const ImportedResult& imported) {
+  return {{"meters_per_unit", optional_json(imported.meters_per_unit)},
+          {"time_offset_s", optional_json(imported.time_offset_s)},
+          {"time_offset_sigma_s", optional_json(imported.time_offset_sigma_s)},
+          {"time_offset_by", imported.clock},
+          {"applied_time_offset_s", imported.applied_time_offset_s}};
 }
 
 /// Returns the chosen world in the unit of the exports, with the planes in it.
@@ -59,6 +65,7 @@ Eigen::Vector4d quaternion_xyzw(const Eigen::Matrix3d& R) {
 void add_world(const Inspection& inspection, ordered_json& json) {
   const auto& measured = inspection.measured_scale;
   const auto& chosen = inspection.chosen_world;
+  if (inspection.imported) json["imported"] = imported_json(*inspection.imported);
   if (measured || known_scale(inspection)) json["metric_scale"] = metric_scale_json(inspection);
   const bool scaled = !measured || measured->reason.empty();
   if (chosen && chosen->reason.empty() && scaled) json["world"] = world_json(inspection);

@@ -95,7 +95,11 @@ std::vector<Eigen::Matrix3d> rotations_of(const Inspection& inspection) {
 std::string to_text(const ScannedStart& start) {
   if (!start.ok) return fmt::format("{} (failed: {})", start.start, start.reason);
   std::string text = fmt::format("{} ({}", start.start, to_string(start.readiness));
-  if (start.sigma_deg) text += fmt::format(", normal +- {:.2g} deg", *start.sigma_deg);
+  constexpr double kUndetermined_deg = 90;
+  if (start.sigma_deg)
+    text += *start.sigma_deg > kUndetermined_deg
+                ? ", normal undetermined"
+                : fmt::format(", normal +- {:.2g} deg", *start.sigma_deg);
   if (start.pne_deg) text += fmt::format(", PNE {:.2g} deg", *start.pne_deg);
   return text + ")";
 }

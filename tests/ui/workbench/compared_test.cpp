@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/methods/methods.h"
 #include "tests/ui/window_test.h"
+#include "ui/window_report.h"
 
 #include <gmock/gmock.h>
 
@@ -122,6 +123,29 @@ TEST(Compared, FlipRequestsItsInspectionAndSwapsTheFirstTwoColumns) {
   EXPECT_EQ(wanted[0].options.method, "pnp_ba");
   EXPECT_EQ(wanted[0].frames, state.document.settings.frames);
   EXPECT_THAT(result_keys(state), ElementsAre("pnp_ba", "gpo", "ba", "pba"));
+}
+
+TEST(Compared, AReportWaitsForTheResultsAndTheirCurves) {
+  WorkbenchState state;
+  state.results.inspection = surveyed(state, "gpo");
+  run_lines(state, "method gpo; compare gpo,ba; report a.html; screenshot b.png");
+  const int frames = state.document.settings.frames;
+  std::vector<std::pair<std::string, int>> wanted;
+  for (const Settings& one : wanted_inspections(state))
+    wanted.emplace_back(one.options.method.key(), one.frames);
+  EXPECT_EQ(wanted.size(), 2 * curve_lengths(frames).size());
+  EXPECT_THAT(wanted, testing::Contains(std::pair<std::string, int>("ba", 5)));
+  const JobStatus status = report_status(state);
+  EXPECT_TRUE(status.busy);
+  EXPECT_EQ(status.done, 1);
+  EXPECT_EQ(status.of, std::ssize(wanted));
+  WorkerLink link;
+  link.survey.busy = true;
+  EXPECT_THAT(take_screenshots(state, link), testing::SizeIs(1)) << "the image does not wait";
+  EXPECT_TRUE(wants_report(state));
+  link.survey.busy = false;
+  EXPECT_EQ(take_screenshots(state, link).at(0).file, "a.html");
+  EXPECT_FALSE(wants_report(state));
 }
 
 TEST(Compared, MissingResultsArePendingOrHaveAReason) {

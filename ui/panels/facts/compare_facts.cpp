@@ -63,7 +63,7 @@ std::vector<ComparedColumn> make_columns() {
   columns.push_back({.title = "Normal \u03c3",
                      .meaning = "Normal uncertainty (1 sigma, first order), without ground truth",
                      .unit = "deg",
-                     .text = angle_text,
+                     .text = [](double deg) { return deg > 90 ? "undetermined" : angle_text(deg); },
                      .value = normal_sigma});
   return columns;
 }

@@ -61,26 +61,29 @@ ResultRow up_row(const InertialAlignment& inertial) {
           .tooltip = "Standard deviation of the direction of gravity"};
 }
 
+/// By the source of the scale.
+constexpr const char* kScaleMeanings[] = {
+    "Standard deviation by the length between two points (0.5 px each) and by the planes",
+    "The imported result is metric: its own unit is the scale",
+    "Standard deviation by poses and accelerometer, and the frame from which on it is below 20 %"};
+
 void add_metric_rows(ResultGroup& group, const Inspection& inspection, double cube_side) {
   const auto scale = known_scale(inspection);
   const auto& measured = inspection.measured_scale;
   if (!scale)
     return group.rows.push_back(dash(
         "Scale", "Unknown: " + (measured ? measured->reason : inspection.inertial->scale_reason)));
-  const auto sigma =
-      measured ? measured->log_sigma : std::optional(inspection.inertial->log_scale_sigma);
+  const auto sigma = scale_log_sigma(inspection);
+  const ScaleSource source = scale_source(inspection);
+  const int start = inspection.window->start;
   const auto& from = inspection.metric_scale_from;
-  group.rows.push_back(
-      {.label = "Scale",
-       .value = sigma ? "\u00b1" + number_text(100 * *sigma, 1) + " %" : "known",
-       .note = measured ? "two points"
-               : from   ? fmt::format("from frame {} on", inspection.window->start + *from)
-                        : "",
-       .tooltip = measured
-                      ? "Standard deviation of the metric scale, from the length between the two "
-                        "points and its uncertainty, those of the points (0.5 px) and of the planes"
-                      : "Standard deviation of the metric scale, estimated from poses and "
-                        "accelerometer, and the frame from which on it is below 20 %"});
+  group.rows.push_back({.label = "Scale",
+                        .value = sigma ? "\u00b1" + number_text(100 * *sigma, 1) + " %" : "known",
+                        .note = source == ScaleSource::points   ? "two points"
+                                : source == ScaleSource::result ? "the result's unit"
+                                : from ? fmt::format("from frame {} on", start + *from)
+                                       : "",
+                        .tooltip = kScaleMeanings[static_cast<std::size_t>(source)]});
   group.rows.push_back({.label = "Plane distance",
                         .value = length_text(*scale * inspection.initialization->plane.distance),
                         .tooltip = "Distance between the reference camera and the leading plane, "
@@ -97,7 +100,8 @@ ResultGroup gravity_group(const Inspection& inspection, double cube_side) {
     group.rows.push_back(dash("Gyroscope", note));
   if (inspection.inertial) group.rows.push_back(up_row(*inspection.inertial));
   const bool gravity = inspection.inertial && inspection.inertial->ok;
-  if (gravity || (inspection.measured_scale && inspection.initialization->ok))
+  const bool scaled = scale_source(inspection) != ScaleSource::accelerometer;
+  if (gravity || (scaled && inspection.initialization->ok))
     add_metric_rows(group, inspection, cube_side);
   if (!gravity) return group;
   const int planes = std::max(1, static_cast<int>(inspection.window->planes.size()));

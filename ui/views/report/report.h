@@ -5,6 +5,7 @@
 #include "engine/base/chart.h"
 #include "engine/experiment/experiment.h"
 #include "engine/inspection/inspection.h"
+#include "engine/recording/bags/messages.h"
 
 #include <nlohmann/json.hpp>
 
@@ -50,10 +51,28 @@ ReportSection drawn_section(const std::shared_ptr<const Inspection>& inspection)
 /// Returns the uncertainty of the normal while the window grows; no chart if it is unknown.
 Figure growth_figure(const Inspection& inspection);
 
-/// Returns the command line, for a POSIX shell, that inspects a recording with these settings.
-std::string report_command(const std::vector<fs::path>& recordings,
-                           const Settings& settings,
-                           const std::string& methods = "");
+/// Shortest window whose report has curves over window lengths.
+inline constexpr int kFewestFramesForCurves = 10;
+
+/// Returns the title of curves over the length of windows from the same start frame.
+std::string curves_title(const std::string& recording, int start);
+
+/// Everything that a report's results depend on.
+struct ReportCommand {
+  std::vector<fs::path> recordings;
+  std::vector<std::string> opening;  ///< options with which they were opened, word by word
+  Settings settings;
+  std::vector<Configuration> compared = {};  ///< empty: only the method of `settings`
+};
+
+/// Returns the options with which a recording was opened, word by word: tracks, topics, and its
+/// calibration from a plane.
+std::vector<std::string> opening_options(const Recording& recording,
+                                         const std::optional<fs::path>& tracks,
+                                         const TopicChoices& topics);
+
+/// Returns the command line, for a POSIX shell, that computes the same results.
+std::string report_command(const ReportCommand& of);
 
 /// Returns the items of a scene in the estimate's world and its camera, for
 /// assets/report/report.js.

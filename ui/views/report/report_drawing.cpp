@@ -3,6 +3,8 @@
 #include "ui/views/report/report.h"
 #include "ui/views/snapshot.h"
 
+#include <fmt/format.h>
+
 namespace gpo {
 
 std::vector<int> report_frames(const Inspection& inspection) {
@@ -28,6 +30,10 @@ ReportSection drawn_section(const std::shared_ptr<const Inspection>& inspection)
   section.normals =
       snapshot_normals(inspection, section.frames.back().frame, cv::Size(860, 780), Theme::light);
   return section;
+}
+
+std::string curves_title(const std::string& recording, int start) {
+  return fmt::format("{}: windows from frame {} over their length", recording, start);
 }
 
 Figure growth_figure(const Inspection& inspection) {

@@ -1,6 +1,7 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/inspection/studies/studies.h"
+#include "ui/views/image/image_geometry.h"
 #include "ui/views/report/report.h"
 #include "ui/views/scene/scene_view.h"
 
@@ -230,13 +231,16 @@ void add_cube_items(SceneItems& items, const Inspection& inspection) {
   const double side = cube_side(inspection, 0);
   for (const CubeAnchor& cube : all_cubes(inspection)) {
     const auto corners = cube_corners(cube, side);
+    const auto color = [&](Role of_main_cube) {
+      return cube.plane ? css_color(cube_color(cube)) : css_color(of_main_cube);
+    };
     for (const auto& face : kFaces) {
       std::vector<Vector3d> points;
       for (const int corner : face) points.push_back(corners[corner]);
-      items.add("face", "cube", points, css_color(Role::cube_face))["alpha"] = 0.35;
+      items.add("face", "cube", points, css_color(cube_face_color(cube)))["alpha"] = 0.35;
       const bool base = &face == &kFaces.front();
       Json& edge =
-          items.line("cube", points, true, css_color(base ? Role::cube_base : Role::cube_edge));
+          items.line("cube", points, true, color(base ? Role::cube_base : Role::cube_edge));
       edge["width"] = 1.8;
     }
   }

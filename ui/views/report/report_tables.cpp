@@ -9,7 +9,9 @@
 #include "ui/views/report/report.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <set>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -137,19 +139,16 @@ void add_gravity_and_scale(Numbers& numbers, const Inspection& inspection) {
   const std::string reason = measured             ? measured->reason
                              : inertial && !scale ? inertial->scale_reason
                                                   : "";
-  std::optional<double> sigma;
-  if (measured)
-    sigma = measured->log_sigma;
-  else if (inertial && scale)
-    sigma = inertial->log_scale_sigma;
-  numbers.add("scale",
-              scale ? fmt::format("1 d = {:.4f} m", *scale) : "unknown",
-              sigma   ? fmt::format("{:.2g} %", 100 * *sigma)
-              : scale ? "unknown"
-                      : "",
-              !reason.empty() ? reason
-              : measured      ? "from two points"
-                              : "from the accelerometer");
+  const auto sigma = scale_log_sigma(inspection);
+  constexpr std::array kSources{
+      "from two points", "the result's own unit", "from the accelerometer"};
+  numbers.add(
+      "scale",
+      scale ? fmt::format("1 d = {:.4f} m", *scale) : "unknown",
+      sigma   ? fmt::format("{:.2g} %", 100 * *sigma)
+      : scale ? "unknown"
+              : "",
+      !reason.empty() ? reason : kSources[static_cast<std::size_t>(scale_source(inspection))]);
 }
 
 void add_residuals(Numbers& numbers, const Inspection& inspection) {
@@ -217,6 +216,32 @@ std::vector<HtmlCell> comparison_row(const Inspection& inspection, bool recordin
   return cells;
 }
 
+std::string shell_word(const std::string& word) {
+  constexpr std::string_view kPlain =
+      "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-./,+:=@%";
+  if (!word.empty() && word.find_first_not_of(kPlain) == std::string::npos) return word;
+  std::string text = "'";
+  for (const char c : word) text += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return text + "'";
+}
+
+/// Returns the options that define the user's own methods, each once.
+std::string method_options(const ReportCommand& of) {
+  std::vector<const Method*> methods{&of.settings.options.method.row()};
+  for (const Configuration& one : of.compared) methods.push_back(&one.method.row());
+  std::set<std::string> options;
+  bool resampled = false;
+  for (const Method* method : methods) {
+    if (!method->command.empty())
+      options.insert(" --method-command " + shell_word(method->command));
+    if (!method->result.empty()) options.insert(" --result " + shell_word(method->result));
+    resampled = resampled || (method->resampled && !method->command.empty());
+  }
+  std::string text;
+  for (const std::string& option : options) text += option;
+  return text + (resampled ? " --method-resample" : "");
+}
+
 }  // namespace
 
 std::string numbers_table(const Inspection& inspection) {
@@ -274,19 +299,23 @@ std::string comparison_table(const std::vector<std::shared_ptr<const Inspection>
   return html_table(header, std::move(rows));
 }
 
-std::string report_command(const std::vector<fs::path>& recordings,
-                           const Settings& settings,
-                           const std::string& methods) {
-  const auto quoted = [](const std::string& word) {
-    constexpr std::string_view kPlain =
-        "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-./,+:=@%";
-    if (!word.empty() && word.find_first_not_of(kPlain) == std::string::npos) return word;
-    std::string text = "'";
-    for (const char c : word) text += c == '\'' ? std::string("'\\''") : std::string(1, c);
-    return text + "'";
-  };
+std::vector<std::string> opening_options(const Recording& recording,
+                                         const std::optional<fs::path>& tracks,
+                                         const TopicChoices& topics) {
+  std::vector<std::string> words;
+  if (tracks) words = {"--tracks", tracks->string()};
+  for (const auto& [role, name] : topics)
+    words.insert(words.end(), {"--topic", fmt::format("{}={}", to_string(role), name)});
+  if (recording.camera_source == CameraSource::self_calibrated)
+    words.insert(words.end(), {"--calibrate", "auto"});
+  return words;
+}
+
+std::string report_command(const ReportCommand& of) {
+  const Settings& settings = of.settings;
   std::string line = "gpo-inspector report";
-  for (const fs::path& recording : recordings) line += " " + quoted(recording.string());
+  for (const fs::path& recording : of.recordings) line += " " + shell_word(recording.string());
+  for (const std::string& word : of.opening) line += " " + shell_word(word);
   const Settings usual;
   for (const Setting& setting : settings_table()) {
     const std::string value = setting_text(settings, setting.key);
@@ -296,12 +325,13 @@ std::string report_command(const std::vector<fs::path>& recordings,
     if (setting.kind == SettingKind::on_off)
       line += (value == "off" ? " --no-" : " --") + option;
     else
-      line += fmt::format(" --{} {}", option, quoted(value));
+      line += fmt::format(" --{} {}", option, shell_word(value));
   }
-  const Method& method = settings.options.method.row();
-  if (!method.command.empty()) line += " --method-command " + quoted(method.command);
-  if (!method.result.empty()) line += " --result " + quoted(method.result);
-  if (!methods.empty()) line += " --methods " + quoted(methods);
+  line += method_options(of);
+  std::string methods;
+  for (const Configuration& one : of.compared)
+    methods += (methods.empty() ? "" : ",") + key_of(one);
+  if (!methods.empty()) line += " --methods " + shell_word(methods);
   return line + " --output report.html";
 }
 

@@ -161,8 +161,10 @@ LegendRows legend_rows(const FrameView& view) {
           color_of(Role::cube_base),
           (inspection.other_cubes.empty() ? "cube" : "cubes on all planes") + length);
     if (shows_up(view)) {
-      const std::string sigma = angle_text(inspection.inertial->gravity_sigma_deg);
-      add(Sign::line, color_of(Role::gravity), "up, uncertainty " + sigma);
+      const double sigma_deg = inspection.inertial->gravity_sigma_deg;
+      add(Sign::line,
+          color_of(Role::gravity),
+          sigma_deg > 90 ? "up, undetermined" : "up, uncertainty " + angle_text(sigma_deg));
     }
   }
   if (inspection.initialization->refused)

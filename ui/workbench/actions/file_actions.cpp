@@ -209,7 +209,7 @@ void add_images(const MenuRows& menu) {
            [](State& state, const Arguments& arguments) {
              expect_extension(arguments.action, arguments[0], ".html");
              if (!state.results.inspection) throw InputError("report: no result to write yet");
-             state.requests.screenshots.push_back({arguments[0], "report"});
+             state.requests.screenshots.push_back({arguments[0], kReportView});
            });
   menu.add({"export-video",
             "Export a movie (MP4)",

@@ -167,6 +167,14 @@ bool open_read(WorkbenchState& state, WorkerLink& link, Worker& worker, ReadFile
   return true;
 }
 
+/// Returns whether a report was waiting, which is the last one that the user asked for.
+bool cancel_report(WorkbenchState& state) {
+  const auto is_report = [](const Screenshot& one) { return one.view == kReportView; };
+  if (std::erase_if(state.requests.screenshots, is_report) == 0) return false;
+  say(state, "Report canceled. No file was written");
+  return true;
+}
+
 void cancel(WorkbenchState& state, WorkerLink& link, Worker& worker) {
   worker.cancel();
   link.reader->cancel();
@@ -351,7 +359,7 @@ void synchronize(
   const bool calibrate = wants_calibration(state, link, opened);
   const bool find_start = std::exchange(state.requests.find_start, false);
   const bool again = std::exchange(state.requests.compute, false);
-  if (std::exchange(state.requests.cancel, false)) {
+  if (std::exchange(state.requests.cancel, false) && !cancel_report(state)) {
     if (link.busy())
       cancel(state, link, worker);
     else
@@ -377,10 +385,10 @@ void synchronize(
   }
   if (opened) link.finding_start = false;
   if (find_start) link.finding_start = true;
-  if (compute || find_start) link.survey_canceled = false;
+  if (compute || find_start || wants_report(state)) link.survey_canceled = false;
   const bool waits = link.survey_canceled || is_read_on(state, link);
   survey.want(waits ? std::vector<Settings>{} : wanted_inspections(state));
-  const bool studies = needs_of(state.view.panes).study && !waits;
+  const bool studies = (needs_of(state.view.panes).study || wants_report(state)) && !waits;
   survey.study(studies ? state.results.inspection : nullptr);
   link.survey = survey.status();
   if (open) link.reading = link.reader->status();

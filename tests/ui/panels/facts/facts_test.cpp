@@ -1,12 +1,15 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/geometry/pose.h"
+#include "engine/inspection/report/report.h"
+#include "engine/inspection/studies/studies.h"
 #include "engine/truth/truth.h"
 #include "engine/window/gyroscope.h"
 #include "engine/window/window.h"
 #include "tests/ui/made_inspection.h"
 #include "ui/look/look.h"
 #include "ui/panels/panels.h"
+#include "ui/views/report/report.h"
 
 #include <cmath>
 
@@ -221,6 +224,24 @@ TEST(UncertaintyFacts, HaveUnitsAndTheRotationModel) {
   EXPECT_EQ(rows.at("Normal").note, "gyro bias unknown");
   for (const char* label : {"Bound, known rotations", "Bound, unknown bias"})
     EXPECT_THAT(rows.at(label).tooltip, HasSubstr("degrees"));
+}
+
+TEST(UncertaintyFacts, AreUndeterminedBeyondARightAngle) {
+  const Inspection inspection = made_inspection({.normal_sigma_deg = 120});
+  const auto groups = result_groups(&inspection, false, 0);
+  const auto uncertainty = std::ranges::find(groups, "UNCERTAINTY", &ResultGroup::title);
+  ASSERT_NE(uncertainty, groups.end());
+  EXPECT_EQ(uncertainty->rows.front().value, "undetermined");
+  EXPECT_EQ(compared_columns().back().text(120), "undetermined");
+  EXPECT_EQ(compared_columns().back().text(0.5), angle_text(0.5));
+  const std::string text = to_text(inspection);
+  EXPECT_THAT(text, AllOf(HasSubstr("normal undetermined"), Not(HasSubstr("120."))));
+  EXPECT_THAT(numbers_table(inspection), HasSubstr(">undetermined<"));
+  ScannedStart start{.start = 3, .ok = true, .sigma_deg = 120};
+  EXPECT_THAT(to_text(start), HasSubstr(", normal undetermined"));
+  start.sigma_deg = 0.5;
+  EXPECT_THAT(to_text(start), HasSubstr(", normal +- 0.5 deg"));
+  EXPECT_EQ(to_json(inspection)["uncertainty"]["normal_sigma_deg"], 120);
 }
 
 TEST(UncertaintyFacts, ShowTheSecondNumberOfATypicalCalibration) {

@@ -1,10 +1,15 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/base/error.h"
+#include "engine/methods/methods.h"
 #include "tests/ui/made_inspection.h"
+#include "ui/views/image/image_geometry.h"
 #include "ui/views/report/html.h"
 #include "ui/views/report/report.h"
 
+#include <set>
+
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <nlohmann/json.hpp>
 
@@ -111,17 +116,63 @@ TEST(ReportScene, HasPointsCamerasAndColorsOfTheImages) {
   EXPECT_GT(std::set<char>(colors.begin(), colors.end()).size(), 3U) << "the floor is checkered";
 }
 
+TEST(ReportScene, DrawsEachCubeInTheColorOfItsPlane) {
+  Inspection inspection = made_inspection();
+  CubeAnchor other = *inspection.cube;
+  other.plane = 1;
+  inspection.other_cubes = {other};
+  std::set<std::string> lines, faces;
+  const auto scene = report_scene(inspection);
+  for (const auto& item : scene["items"])
+    if (item["layer"] == "cube") (item["kind"] == "face" ? faces : lines).insert(item["color"]);
+  const auto css = [](std::uint32_t rgb) { return fmt::format("#{:06x}", rgb); };
+  const std::string main = css(color_of(Role::cube_base, Theme::light));
+  EXPECT_THAT(lines, testing::IsSupersetOf({main, css(cube_color(other))}));
+  EXPECT_THAT(faces,
+              testing::UnorderedElementsAre(css(cube_face_color(*inspection.cube)),
+                                            css(cube_face_color(other))));
+}
+
 TEST(ReportCommand, NamesChangedSettingsAndQuotesPaths) {
   Settings settings;
   settings.frames = 12;
   settings.options.method = "pba";
-  const std::string line = report_command({"it's a path"}, settings, "gpo,pba");
+  const std::string line = report_command({.recordings = {"it's a path"},
+                                           .opening = {"--tracks", "a b"},
+                                           .settings = settings,
+                                           .compared = parse_configurations("gpo,pba")});
   EXPECT_THAT(line,
-              AllOf(HasSubstr("gpo-inspector report 'it'\\''s a path' "),
+              AllOf(HasSubstr("gpo-inspector report 'it'\\''s a path' --tracks 'a b' "),
                     HasSubstr(" --frames 12"),
                     HasSubstr(" --method pba"),
                     HasSubstr(" --methods gpo,pba --output report.html")));
-  EXPECT_EQ(report_command({"a"}, {}), "gpo-inspector report a --output report.html");
+  EXPECT_EQ(report_command({.recordings = {"a"}, .opening = {}, .settings = {}}),
+            "gpo-inspector report a --output report.html");
+}
+
+TEST(ReportCommand, DefinesEachOwnMethodOnce) {
+  Method command = find_method("gpo"), result = command;
+  command.command = "mine=./mine --fast";
+  command.resampled = true;
+  result.result = "orb=orb.txt,offset=auto";
+  const auto choice = [](const Method& method) {
+    return MethodChoice(std::make_shared<const Method>(method));
+  };
+  ReportCommand of{.recordings = {"a"}, .opening = {}, .settings = {}};
+  of.settings.options.method = choice(result);
+  for (const Method* one : {&command, &result, &command}) of.compared.push_back({choice(*one)});
+  EXPECT_THAT(report_command(of),
+              HasSubstr(" --method-command 'mine=./mine --fast' --result orb=orb.txt,offset=auto "
+                        "--method-resample --methods "));
+}
+
+TEST(ReportCommand, OpensTheRecordingAsItWasOpened) {
+  Recording recording;
+  EXPECT_THAT(opening_options(recording, {}, {}), testing::IsEmpty());
+  recording.camera_source = CameraSource::self_calibrated;
+  EXPECT_THAT(
+      opening_options(recording, "t.csv", {{TopicRole::image, "/cam0"}}),
+      testing::ElementsAre("--tracks", "t.csv", "--topic", "image=/cam0", "--calibrate", "auto"));
 }
 
 TEST(ReportFrames, AreDistinctAndCoverTheWindow) {

@@ -210,6 +210,16 @@ TEST_F(WorkerLinkTest, EscapeClearsTheSelectionThenTheDrawerIfNothingRuns) {
   EXPECT_EQ(state_.view.panes.drawer, nullptr);
 }
 
+TEST_F(WorkerLinkTest, EscapeCancelsAReportBeforeAnythingElse) {
+  open_and_settle("a.mkv");
+  state_.requests.screenshots = {{"a.html", kReportView}};
+  EXPECT_FALSE(wanted_inspections(state_).empty());
+  run_once("escape");
+  EXPECT_FALSE(wants_report(state_));
+  EXPECT_TRUE(wanted_inspections(state_).empty());
+  EXPECT_EQ(state_.messages.text, "Report canceled. No file was written");
+}
+
 TEST_F(WorkerLinkTest, EscapeWhileOpeningPromisesNoComputation) {
   open_and_settle("desk");
   hold_ = true;
