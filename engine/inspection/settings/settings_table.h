@@ -48,7 +48,7 @@ struct ChoiceKeys<MaskKind> {
 /// it by its place in that frame.
 struct Mask {
   MaskKind kind = MaskKind::leave_out;
-  std::vector<Eigen::Vector2d> corners_raw_px = {};  ///< of a polygon; two: of a rectangle
+  std::vector<Eigen::Vector2d> corners_raw_px = {};  ///< polygon; two: a rectangle
 
   /// Returns the corners in turn, at least three.
   std::vector<Eigen::Vector2d> outline() const;
@@ -80,7 +80,7 @@ struct Settings {
   int frames = 30;                          ///< length of the window
   Tracking tracking = Tracking::anchored;   ///< by the built-in front end
   std::vector<std::int64_t> exclude = {};   ///< ids of excluded tracks, ascending
-  Masks mask = {};                          ///< of the reference frame, whichever it is
+  Masks mask = {};                          ///< areas of the reference frame
   PointPair scale_points = {};              ///< `scale_length` apart, see `measure_scale`
   std::optional<double> scale_length = {};  ///< [m]
   double scale_length_sigma = 0;            ///< its standard deviation [m]

@@ -14,15 +14,15 @@ struct ExtrapolatedCamera {
   int frame = 0;  ///< counts in the recording
   std::int64_t timestamp_ns = 0;
   Pose pose;             ///< in the estimate's world
-  int points = 0;        ///< of the planes, seen in the frame within the window's threshold
+  int points = 0;        ///< points of the planes that agree within the window's threshold
   double median_px = 0;  ///< median reprojection error of the points seen in the frame
 };
 
-/// Cameras of the frames right after a window. Nothing of the window's result depends on them, and
-/// they have no uncertainty: planes and points are held as they were estimated. Immutable.
+/// Cameras of the frames right after a window. The window's result does not depend on them. They
+/// have no uncertainty, because planes and points are held as they were estimated. Immutable.
 struct Extrapolation {
   std::shared_ptr<const Inspection> inspection;  ///< the window
-  std::vector<ExtrapolatedCamera> cameras = {};  ///< of consecutive frames after it
+  std::vector<ExtrapolatedCamera> cameras = {};  ///< consecutive frames after it
   std::string end = {};  ///< why there are no more cameras, one line; empty if none were requested
   /// The inspection as if its window had these frames, too, for views: tracks, inliers, cameras and
   /// truth; `Inspection::extrapolated_from` is set. Null without cameras.

@@ -64,7 +64,7 @@ TEST(Masks, LeaveOutTracksByTheirPlaceInTheReferenceFrame) {
     EXPECT_EQ(is_excluded(*without, j), in_mask);
     EXPECT_FALSE(in_mask && without->window->points_px[0].col(j).allFinite());
     const std::string verdict = track_life(*without, j).verdict;
-    EXPECT_EQ(verdict == "in a mask that leaves out its tracks", in_mask) << verdict;
+    EXPECT_EQ(verdict.starts_with("in a mask that leaves out its tracks"), in_mask) << verdict;
   }
   EXPECT_GT(inside, 10);
   EXPECT_GT(inliers, 10);

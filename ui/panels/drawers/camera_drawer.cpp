@@ -18,14 +18,15 @@ void draw_rows(const std::vector<ResultRow>& rows, float values) {
     const float left = ImGui::GetCursorPosX();
     ImGui::BeginGroup();
     colored_text(Role::text_dim, row.label);
-    ImGui::SameLine(left + values);
+    ImGui::SameLine();
+    ImGui::SetCursorPosX(left + values);  // in a table, the offset of SameLine is another
     colored_text(row.color, row.value);
     if (!row.note.empty()) {
       ImGui::SameLine();
       colored_text(Role::text_dim, row.note);
     }
     ImGui::EndGroup();
-    tooltip(row.tooltip);
+    tooltip(fmt::format("{} {}\n{}", row.value, row.note, row.tooltip));  // a column may cut it
   }
 }
 
@@ -94,15 +95,15 @@ void camera_drawer(const PanelContext& ui, const Rectangle& place) {
   const float s = ui.scale;
   auto& cached = ui.views.recording_groups;
   cached.update(recording, [&] { return recording_groups(*recording); });
-  const float grid = std::min(place.width * 0.34F, place.height * 1.5F);
+  const float grid = std::min(place.width * 0.24F, place.height * 1.5F);
   const float width = place.width - grid - 24 * s;
   ImGui::SetCursorPos({12 * s, 6 * s});
   ImGui::BeginChild("facts", {width, place.height - 6 * s});
   ImGui::PushFont(font(Font::small));
-  const float values = 12 * ImGui::GetFontSize() / 2 + 24 * s;
+  const float values = 6.8F * ImGui::GetFontSize();
   if (const auto& calibration = ui.state.results.calibration)
     draw_calibration(ui, *calibration, values);
-  const auto columns = static_cast<int>(cached.value.size());
+  const int columns = std::clamp(static_cast<int>(width / (26 * ImGui::GetFontSize())), 1, 3);
   if (ImGui::BeginTable("groups", columns, ImGuiTableFlags_SizingStretchProp)) {
     for (const ResultGroup& group : cached.value) {
       ImGui::TableNextColumn();

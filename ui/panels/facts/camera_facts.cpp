@@ -74,18 +74,18 @@ ResultRow view_row(const Camera& camera) {
 ResultGroup camera_group(const Recording& recording) {
   const Camera& camera = recording.camera;
   const bool guess = recording.camera_source == CameraSource::guess;
-  ResultGroup group{"CAMERA",
-                    {{.label = "Source",
-                      .value = source_of(recording.camera_source),
-                      .tooltip = guess ? "Run calibrate, or add a camera file"
-                                       : "Where the parameters of the lens come from",
-                      .color = guess ? Role::warning : Role::text},
-                     {.label = "Image",
-                      .value = fmt::format("{}\u00d7{} px", camera.width, camera.height),
-                      .tooltip = "Size of the recorded images"},
-                     {.label = "Lens model",
-                      .value = distortion_name(camera.distortion),
-                      .tooltip = "Model of the distortion, as in camera files"}}};
+  ResultGroup group{
+      "CAMERA",
+      {{.label = "Source",
+        .value = source_of(recording.camera_source),
+        .tooltip = guess ? "Run calibrate, or add a camera file" : "Source of the lens parameters",
+        .color = guess ? Role::warning : Role::text},
+       {.label = "Image",
+        .value = fmt::format("{}\u00d7{} px", camera.width, camera.height),
+        .tooltip = "Size of the recorded images"},
+       {.label = "Lens model",
+        .value = distortion_name(camera.distortion),
+        .tooltip = "Model of the distortion, as in camera files"}}};
   const std::vector<std::string> names = parameter_names(camera);
   const std::vector<double> values = parameters(camera);
   const bool by_images = recording.camera_source == CameraSource::self_calibrated;

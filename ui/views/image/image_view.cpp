@@ -241,12 +241,10 @@ bool is_extrapolated(const FrameView& view) {
 }
 
 LegendRow extrapolation_row(const FrameView& view) {
-  const Window& window = *view.inspection.window;
+  const int after = view.in_window() - *view.inspection.extrapolated_from + 1;
   return {Sign::frustum,
           color_of(Role::uncertain),
-          fmt::format("extrapolated: camera by PnP, {} after the window",
-                      counted(view.in_window() - *view.inspection.extrapolated_from + 1, "frame")) +
-              (window.planes.size() > 1 ? " on its planes" : "")};
+          fmt::format("extrapolated by PnP, {} after the window", counted(after, "frame"))};
 }
 
 /// Frames the image of an extrapolated camera in dashes.

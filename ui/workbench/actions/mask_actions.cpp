@@ -63,13 +63,13 @@ void add_mask_actions(std::vector<Action>& table) {
             "Leave out an area",
             "Leaves out the tracks in an area of the reference frame: a dragged rectangle, or a "
             "polygon of clicked corners; in scripts pixels of the recorded, distorted image"},
-           "[X1 [Y1 [X2 [Y2 [...]]]]]",
+           "[X1 Y1 X2 Y2 ...]",
            [](State& s, const Arguments& a) { add_mask(s, MaskKind::leave_out, a); });
   menu.add({"mask plane",
             "Draw the area of the main plane",
             "Finds plane 1 only among the tracks in an area of the reference frame, and further "
             "planes only outside of it; drawn and written as for mask not"},
-           "[X1 [Y1 [X2 [Y2 [...]]]]]",
+           "[X1 Y1 X2 Y2 ...]",
            [](State& s, const Arguments& a) { add_mask(s, MaskKind::plane, a); });
   menu.plain({"mask off", "Remove all masks", "Removes all masks and computes again"},
              remove_masks);
