@@ -310,6 +310,7 @@ WorkbenchHost::WorkbenchHost(Gui& gui,
       worker_(std::move(open), changed) {
   link.example = std::move(example);
   link.reader = std::make_unique<FileReader>(changed);
+  link.extrapolator = std::make_unique<Extrapolator>(changed);
 }
 
 PanelInput WorkbenchHost::input() const {
@@ -380,17 +381,16 @@ void WorkbenchHost::write_movie() {
   }
 }
 
-void WorkbenchHost::save(const Screenshot& screenshot) {
-  const auto file =
-      screenshot.file.empty() ? fs::absolute(free_image_name(state)) : screenshot.file;
+void WorkbenchHost::save(const Screenshot& wanted) {
+  const auto file = wanted.file.empty() ? fs::absolute(free_image_name(state)) : wanted.file;
   try {
     check_writable(file);
-    if (screenshot.view == kReportView)
+    if (wanted.view == kReportView)
       write_window_report(state, file, [this](const auto& shown, const auto& view, cv::Size px) {
         return draw_view(view, px, input().with(shown), size, {gui_, views_});
       });
     else
-      write_image(file, image(screenshot.view, screenshot.size));
+      write_image(file, image(wanted.view, wanted.size));
     say(state, "saved " + file.string());
   } catch (const InputError& error) {
     say(state, error.what(), Severity::error);

@@ -102,7 +102,7 @@ class WorkbenchHost {
 
  private:
   PanelInput input() const;
-  void save(const Screenshot& screenshot);
+  void save(const Screenshot& wanted);
   void write_movie();
   bool exporting() const { return exports_.busy() || !state.requests.exports.empty(); }
 

@@ -83,6 +83,13 @@ std::string help_of(const Setting& setting) {
          (keys.empty() ? "" : fmt::format(": {}", fmt::join(keys, ", ")));
 }
 
+std::string type_of(const Setting& setting) {
+  if (setting.kind == SettingKind::choice) return "KEY";
+  if (setting.kind == SettingKind::point_pair) return "X1,Y1,X2,Y2[,FRAME]";
+  if (setting.kind == SettingKind::masks) return "KIND:X1,Y1,X2,Y2[,X3,Y3...][/...]";
+  return fmt::format("{:g}..{:g}", setting.least, setting.most);
+}
+
 /// Adds one option per setting. `given` receives the keys of the options on the command line.
 void add_settings(CLI::App& command, Settings& settings, std::vector<std::string>& given) {
   // Applied as soon as it is parsed, so that single options override it in any position.
@@ -126,13 +133,9 @@ void add_settings(CLI::App& command, Settings& settings, std::vector<std::string
           ->delimiter(',');
     } else {
       const std::string normal = setting_text(settings, setting.key);
-      const std::string type = setting.kind == SettingKind::choice ? "KEY"
-                               : setting.kind == SettingKind::point_pair
-                                   ? "X1,Y1,X2,Y2[,FRAME]"
-                                   : fmt::format("{:g}..{:g}", setting.least, setting.most);
       command.add_option_function<std::string>(name, take, help)
           ->default_str(setting.optional ? "" : normal)
-          ->type_name(type);
+          ->type_name(type_of(setting));
     }
   }
 }

@@ -169,7 +169,17 @@ Worker::Opened opened_for_window(const std::shared_ptr<const Recording>& recordi
     if (!found.lens.ok) throw InputError(failure_of(found));
     Recording calibrated = *recording;
     cache_camera(found, calibrated);
-    return opened_for_window(std::make_shared<const Recording>(std::move(calibrated)));
+    auto next = opened_for_window(std::make_shared<const Recording>(std::move(calibrated)));
+    next.calibration =
+        std::make_shared<const CalibrationResult>(CalibrationResult{recording, to_text(found)});
+    next.undo_calibration = [recording] {
+      std::error_code none;
+      // An earlier estimate from the same images is in the same file.
+      if (recording->camera_source != CameraSource::self_calibrated)
+        fs::remove(cache_file(*recording), none);
+      return opened_for_window(recording);
+    };
+    return next;
   };
   return opened;
 }

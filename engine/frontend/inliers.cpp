@@ -209,10 +209,15 @@ std::vector<Eigen::VectorXd> noise_ratios(const Tracks& tracks) {
   return ratios;
 }
 
-void add_homography(Window& window, int frame, const RansacOptions& ransac) {
+/// `candidates` as `InlierOptions::on_first_plane`.
+void add_homography(Window& window,
+                    int frame,
+                    const RansacOptions& ransac,
+                    const std::vector<bool>& candidates) {
   std::vector<int> seen;
   for (int j = 0; j < window.track_count(); ++j)
-    if (window.points_px[0].col(j).allFinite() && window.points_px[frame].col(j).allFinite())
+    if ((candidates.empty() || candidates[j]) && window.points_px[0].col(j).allFinite() &&
+        window.points_px[frame].col(j).allFinite())
       seen.push_back(j);
   const auto robust = homography_ransac(window.points_px[0](Eigen::all, seen),
                                         window.points_px[frame](Eigen::all, seen),
@@ -225,12 +230,15 @@ void add_homography(Window& window, int frame, const RansacOptions& ransac) {
 }
 
 /// Selects tracks that agree with the homographies in nearly all frames, alternating with these
-/// until nothing changes. Leaves the window unchanged if a frame has too few.
-void select_consistent(Window& window) {
+/// until nothing changes. Leaves the window unchanged if a frame has too few. `candidates` as
+/// `InlierOptions::on_first_plane`.
+void select_consistent(Window& window, const std::vector<bool>& candidates) {
   Window selected = window;
   for (int round = 0;; ++round) {
     if (!fit(selected)) return;
     auto inlier = choose(errors_of(selected));
+    for (std::vector<bool>& frame : inlier)
+      for (std::size_t j = 0; j < candidates.size(); ++j) frame[j] = frame[j] && candidates[j];
     if (inlier == selected.inlier || round == kMostSelections) break;
     selected.inlier = std::move(inlier);
   }
@@ -283,10 +291,16 @@ double image_share(const Window& window, const std::vector<int>& tracks, const C
   return std::min(1.0, cv::contourArea(hull) / (1.0 * camera.width * camera.height));
 }
 
-void find_planes(Window& window, const Camera& camera, const RansacOptions& ransac, int leader) {
+void find_planes(Window& window,
+                 const Camera& camera,
+                 const RansacOptions& ransac,
+                 const InlierOptions& options) {
   window.inliers = Inliers::planes;
-  const TrackPlanes found =
-      window_planes(window.points_px, window.threshold_px, ransac.seed, window.noise_ratio);
+  const TrackPlanes found = window_planes(window.points_px,
+                                          window.threshold_px,
+                                          ransac.seed,
+                                          window.noise_ratio,
+                                          options.on_first_plane);
   window.largest_refused = found.largest_refused;
   for (std::size_t k = 0; k < found.planes.size(); ++k) {
     window.planes.push_back(plane_of(window, found.planes[k], ransac));
@@ -294,7 +308,7 @@ void find_planes(Window& window, const Camera& camera, const RansacOptions& rans
     window.planes.back().stability = found.stability[k];
   }
   if (window.planes.empty()) window.planes.push_back(plane_of(window, {}, ransac));
-  window.leader = std::clamp(leader, 0, static_cast<int>(window.planes.size()) - 1);
+  window.leader = std::clamp(options.leader, 0, static_cast<int>(window.planes.size()) - 1);
   window.H_i1 = window.planes[window.leader].H_i1;
   window.inlier = window.planes[window.leader].inlier;
   if (window.planes[0].tracks.empty()) window.planes.clear();
@@ -366,13 +380,15 @@ Window make_window(const Tracks& tracks,
   if (!ransac.threshold_px) ransac.threshold_px = usual_threshold_px(camera, window.points_px);
   window.threshold_px = *ransac.threshold_px;
   if (options.inliers == Inliers::planes && ransac.enabled) {
-    find_planes(window, camera, ransac, options.leader);
+    find_planes(window, camera, ransac, options);
   } else {
     window.H_i1.push_back(Matrix3d::Identity());
     window.inlier.emplace_back(tracks.track_count(), false);
-    for (int i = 1; i < window.frame_count(); ++i) add_homography(window, i, ransac);
+    for (int i = 1; i < window.frame_count(); ++i)
+      add_homography(window, i, ransac, options.on_first_plane);
   }
-  if (options.inliers == Inliers::consistent && ransac.enabled) select_consistent(window);
+  if (options.inliers == Inliers::consistent && ransac.enabled)
+    select_consistent(window, options.on_first_plane);
   for (int j = 0; j < window.track_count(); ++j) window.inlier[0][j] = window.is_inlier_track(j);
   window.R_wc.assign(window.frame_count(), Matrix3d::Identity());
   return window;

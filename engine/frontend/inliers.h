@@ -76,21 +76,27 @@ struct TrackPlanes {
 /// most tracks comes first; no track is in two. A set is accepted only if few tracks miss its gate
 /// by little. `points_px` is one per frame, 2 x tracks, NaN: not seen. `gate_px` is the largest RMS
 /// transfer error of an agreeing track with the `noise_ratio` 1 (`Window::noise_ratio`).
+/// `on_first_plane` as `InlierOptions::on_first_plane`.
 TrackPlanes window_planes(const std::vector<Eigen::Matrix2Xd>& points_px,
                           double gate_px = 2,
                           std::uint64_t seed = 1,
-                          const std::vector<Eigen::VectorXd>& noise_ratio = {});
+                          const std::vector<Eigen::VectorXd>& noise_ratio = {},
+                          const std::vector<bool>& on_first_plane = {});
 
 struct InlierOptions {
   RansacOptions ransac = {};
   Inliers inliers = Inliers::per_frame;
   int leader = 0;  ///< the leading plane, counted from 0 by support (`Inliers::planes`)
+  /// One per track: may be on the first plane of the window, and on no other one; this plane comes
+  /// first whatever its support. Empty: unknown, each may be on any plane.
+  std::vector<bool> on_first_plane = {};
 };
 
 /// Undistorts the tracks and selects inliers: between the reference frame and each other frame, and
 /// for `Inliers::consistent` also over the window if enough tracks are consistent, or by extracting
-/// the window's planes. Rotations are left at the identity. `recording_timestamps_ns` has all
-/// frames of the recording.
+/// the window's planes. With `on_first_plane`, the first plane is found among these tracks
+/// and all further ones among the others; without planes only these tracks may be inliers.
+/// Rotations are left at the identity. `recording_timestamps_ns` has all frames of the recording.
 Window make_window(const Tracks& tracks,
                    const Camera& camera,
                    std::span<const std::int64_t> recording_timestamps_ns,

@@ -326,12 +326,11 @@ double explained(const TrackPlanes& found) {
   return sum;
 }
 
-}  // namespace
-
-TrackPlanes window_planes(const std::vector<Matrix2Xd>& points_px,
-                          double gate_px,
-                          std::uint64_t seed,
-                          const std::vector<Eigen::VectorXd>& noise_ratio) {
+/// `noise_ratio` as `Window::noise_ratio`.
+TrackPlanes planes_of(const std::vector<Matrix2Xd>& points_px,
+                      double gate_px,
+                      std::uint64_t seed,
+                      const std::vector<Eigen::VectorXd>& noise_ratio) {
   if (points_px.size() < 2 || points_px[0].cols() < kLeastSeen) return {};
   const Points points{points_px, noise_ratio};
   TrackPlanes fine = Search(points, kLeastGate * gate_px, gate_px).planes(seed);
@@ -340,6 +339,37 @@ TrackPlanes window_planes(const std::vector<Matrix2Xd>& points_px,
   // Tracks may be as noisy as the gate: then a wider gate explains far more of them.
   TrackPlanes coarse = Search(points, gate_px, gate_px).planes(seed);
   return explained(coarse) > kFarMore * explained(fine) ? coarse : fine;
+}
+
+}  // namespace
+
+TrackPlanes window_planes(const std::vector<Matrix2Xd>& points_px,
+                          double gate_px,
+                          std::uint64_t seed,
+                          const std::vector<Eigen::VectorXd>& noise_ratio,
+                          const std::vector<bool>& on_first_plane) {
+  if (on_first_plane.empty()) return planes_of(points_px, gate_px, seed, noise_ratio);
+  const auto planes_among = [&](bool on_first) {
+    std::vector<int> chosen;
+    for (int j = 0; j < std::ssize(on_first_plane); ++j)
+      if (on_first_plane[j] == on_first) chosen.push_back(j);
+    std::vector<Matrix2Xd> points;
+    for (const Matrix2Xd& frame : points_px) points.emplace_back(frame(Eigen::all, chosen));
+    std::vector<Eigen::VectorXd> ratios;
+    for (const Eigen::VectorXd& frame : noise_ratio) ratios.emplace_back(frame(chosen));
+    TrackPlanes found = planes_of(points, gate_px, seed, ratios);
+    for (std::vector<int>& plane : found.planes)
+      std::ranges::transform(plane, plane.begin(), [&](int k) { return chosen[k]; });
+    return found;
+  };
+  TrackPlanes found = planes_among(true);
+  if (found.planes.empty()) return found;
+  const TrackPlanes others = planes_among(false);
+  found.planes.resize(1);
+  found.stability.resize(1);
+  found.planes.insert(found.planes.end(), others.planes.begin(), others.planes.end());
+  found.stability.insert(found.stability.end(), others.stability.begin(), others.stability.end());
+  return found;
 }
 
 }  // namespace gpo

@@ -129,6 +129,8 @@ struct Inspection {
   /// true_cube.unit / cube.unit.
   std::optional<CubeAnchor> true_cube;
   Timing timing;
+  /// Frame of the window from which on cameras are extrapolated (`extrapolate`); nullopt: none are.
+  std::optional<int> extrapolated_from = {};
 };
 
 /// Largest distance of a pixel from a track of the plane that it shows [image width].
@@ -199,9 +201,12 @@ inline const std::vector<Verdict>& shown_growth(const Inspection& inspection) {
   return inspection.comparable_growth.empty() ? inspection.growth : inspection.comparable_growth;
 }
 
-/// Returns whether the track of a column was excluded by hand.
+/// Returns whether the track of a column was excluded by hand, by its id or by a mask.
 inline bool is_excluded(const Inspection& inspection, int column) {
-  return std::ranges::binary_search(inspection.settings.exclude, inspection.tracks->ids[column]);
+  const Tracks& tracks = *inspection.tracks;
+  const Settings& settings = inspection.settings;
+  return std::ranges::binary_search(settings.exclude, tracks.ids[column]) ||
+         settings.mask.contain(MaskKind::leave_out, tracks.raw_px[0].col(column));
 }
 
 /// Returns what the inliers are counted from and how they were selected, for people: "tracks,

@@ -179,11 +179,13 @@ struct Inspector::Stages {
   bool update_window(const Settings& settings, const std::stop_token& stop) {
     check_excluded(*tracks.value, settings);
     outliers.update(rejecting(SettingStage::inliers, settings), [&] {
-      return std::optional(
-          std::make_shared<const Window>(window_of(without(*tracks.value, settings.exclude),
-                                                   recording->camera,
-                                                   recording->timestamps_ns,
-                                                   settings.options)));
+      const Tracks& all = *tracks.value;
+      return std::optional(std::make_shared<const Window>(
+          window_of(without(without(all, settings.exclude), left_out(all, settings.mask)),
+                    recording->camera,
+                    recording->timestamps_ns,
+                    settings.options,
+                    on_first_plane(all, settings.mask))));
     });
     const Settings acting = rejecting(SettingStage::rotations, settings);
     return rotations.update(acting, [&]() -> std::optional<WindowRotations> {

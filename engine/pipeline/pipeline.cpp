@@ -109,10 +109,12 @@ void add_gravity(const Window& window,
 Window window_of(const Tracks& tracks,
                  const Camera& camera,
                  std::span<const std::int64_t> timestamps_ns,
-                 const InitializeOptions& options) {
+                 const InitializeOptions& options,
+                 const std::vector<bool>& on_first_plane) {
   const InlierOptions selection{.ransac = ransac_options(options),
                                 .inliers = inliers_used(options),
-                                .leader = options.plane - 1};
+                                .leader = options.plane - 1,
+                                .on_first_plane = on_first_plane};
   Window window = make_window(tracks, camera, timestamps_ns, selection);
   window.readout_direction = readout_direction(camera);
   if (camera.readout && readout_lines(camera) > 1) {

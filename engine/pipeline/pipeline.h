@@ -42,11 +42,13 @@ void check_sample(std::int64_t timestamp_ns,
 void check_gyroscope(const Gyroscope& gyroscope);
 
 /// Returns the window of the tracks: undistorted, with inliers, homographies and planes. Rotations
-/// are left at the identity. `timestamps_ns` are those of all frames of the recording.
+/// are left at the identity. `timestamps_ns` are those of all frames of the recording,
+/// `on_first_plane` as in `InlierOptions`.
 Window window_of(const Tracks& tracks,
                  const Camera& camera,
                  std::span<const std::int64_t> timestamps_ns,
-                 const InitializeOptions& options);
+                 const InitializeOptions& options,
+                 const std::vector<bool>& on_first_plane = {});
 
 /// Returns why the requested plane does not lead the window: it has fewer planes. Empty if it does,
 /// or without planes.

@@ -311,6 +311,8 @@ TEST(Run, RefusesBadInputInOneLineAndLeavesNoFile) {
        {"--shutter fast", "--shutter: unknown value 'fast', expected one of known"},
        {"--exclude 3,9999", "--exclude: track 9999 is not in the window, which has tracks 0 to"},
        {"--exclude 3,x", "--exclude"},
+       {"--mask not:1,2", "expected KIND:X1,Y1,X2,Y2 (a rectangle)"},
+       {"--extrapolated-trajectory", "--extrapolate"},
        {"--bogus", "--bogus"},
        {"--tracks no-such-file.csv", "no-such-file.csv"}});
 }

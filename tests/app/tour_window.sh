@@ -137,7 +137,7 @@ type_command "tour off"
 type_command "frame 0"
 type_command "set-scale 0.3 137 231 432 334"
 expect "set-scale to set the length" 0.3 0.3 settings scale_length
-type_command "move-cube 432 334"
+type_command "put-cube 432 334"
 mouse_to $((292 + (width - 292) / 6)) $((height / 2))
 xdotool keydown alt click 1 keyup alt
 stop scale

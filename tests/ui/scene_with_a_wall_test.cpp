@@ -106,7 +106,7 @@ TEST_F(SceneWithAWall, ScriptMovesTheCubeOfThePlaneUnderAPixelAndPicksPointsForT
     const Vector2d px = tracks.raw_px[0].col(column);
     return fmt::format("{} {}", px.x(), px.y());
   };
-  run_line(state_, "move-cube " + text(wall[0]));
+  run_line(state_, "put-cube " + text(wall[0]));
   EXPECT_TRUE(state_.document.other_cube_rays.contains(2));
   run_line(state_, "reset-cube");
   EXPECT_TRUE(state_.document.other_cube_rays.empty());

@@ -13,7 +13,7 @@ namespace gpo {
 // A pane's function is declared and named by the key of its row in `panes()`.
 DrawPanel image_alone, compare_alone, scene_pane, normals_pane, solver_pane, candidates_pane;
 DrawPanel curves_drawer, table_drawer, residuals_drawer, timing_drawer, track_drawer, tracks_drawer,
-    log_drawer;
+    camera_drawer, log_drawer;
 namespace {
 
 using PaneDrawing = std::pair<std::string_view, DrawPanel*>;
@@ -29,6 +29,7 @@ constexpr auto kDrawings = std::to_array<PaneDrawing>({{"image", image_alone},
                                                        {"timing", timing_drawer},
                                                        {"track", track_drawer},
                                                        {"tracks", tracks_drawer},
+                                                       {"camera", camera_drawer},
                                                        {"log", log_drawer}});
 
 /// Returns whether the image, or the reason why there is none, has come into the views.
@@ -140,7 +141,8 @@ ViewOptions view_options(const PanelInput& input, Views& views) {
                                                                       : 1,
                       .model = model,
                       .model_error = error,
-                      .colors = views.colors.value};
+                      .colors = views.colors.value,
+                      .after = state.results.after};
   options.show.legend &= inspection != nullptr;
   return options;
 }

@@ -169,6 +169,7 @@ struct Views {
   Cached<std::string, LoadedModel> model;  ///< by name
   Cached<std::shared_ptr<const Inspection>, std::vector<TrackRow>>
       tracks;  ///< in the order of the list
+  Cached<std::shared_ptr<const Recording>, std::vector<ResultGroup>> recording_groups;
   NormalsMap normals;
   WindowImage window;
   float verdict_height = 0, settings_height = 0;  ///< content heights [px]; 0: unknown

@@ -151,6 +151,7 @@ constexpr auto kPanes = [] {
     {drawer, "timing", "Timing", "Run time of each stage", kCompared},
     {drawer, "track", "Track", "The whole life of the selected track"},
     {drawer, "tracks", "Tracks", "All tracks of the window, to sort and select"},
+    {drawer, "camera", "Camera", "Camera, sensors, clocks, gaps, and the report of a calibration"},
     {drawer, "log", "Log", "All messages"},
     {window, "window", "Window", "The whole workbench"}});
 }();

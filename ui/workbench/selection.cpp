@@ -48,7 +48,9 @@ void pick_point(WorkbenchState& state, const Vector2d& raw_px) {
 
 void close_next(WorkbenchState& state) {
   Panes& panes = state.view.panes;
-  if (!state.selection.tracks.empty() || !state.selection.points_px.empty())
+  if (state.view.drawn_mask)
+    state.view.drawn_mask.reset();
+  else if (!state.selection.tracks.empty() || !state.selection.points_px.empty())
     state.selection = {};
   else if (panes.beside != nullptr)
     panes.beside = nullptr;

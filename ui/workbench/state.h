@@ -6,6 +6,7 @@
 #include "engine/exports/exports.h"
 #include "engine/inspection/inspection.h"
 #include "engine/inspection/settings/settings_table.h"
+#include "engine/inspection/studies/extrapolation.h"
 #include "engine/inspection/studies/studies.h"
 #include "engine/recording/bags/messages.h"
 #include "engine/recording/recording.h"
@@ -176,15 +177,27 @@ struct ViewState {
   HelpPage help_page = HelpPage::keys;
   int tour = 0;                        ///< step that is shown, counts from 1; 0: none
   std::optional<std::string> palette;  ///< typed text; nullopt: closed
+  std::optional<Mask> drawn_mask;      ///< being drawn with the mouse; nullopt: none
   std::optional<Browse> browse;        ///< nullopt: closed
+};
+
+/// A calibration of the camera that the user may accept or discard.
+struct CalibrationResult {
+  std::shared_ptr<const Recording> before;  ///< the recording with its camera before
+  std::string report;                       ///< for people, several lines
 };
 
 /// Results computed for the document or read from files.
 struct ComputedResults {
   std::shared_ptr<const Inspection> inspection;  ///< the latest; null: none yet
   std::shared_ptr<const SurveyResults> surveyed = std::make_shared<const SurveyResults>();
-  std::shared_ptr<const NormalStudy> study;  ///< the latest, maybe of another window; null: none
-  std::shared_ptr<const StartScan> scan;     ///< null: not requested
+  std::shared_ptr<const NormalStudy> study;    ///< the latest, maybe of another window; null: none
+  std::shared_ptr<const StartScan> scan;       ///< null: not requested
+  std::shared_ptr<const Extrapolation> after;  ///< cameras after the latest window; null: none
+  /// The latest inspection with the frames after its window, for views; null: none.
+  std::shared_ptr<const Inspection> extended;
+  std::shared_ptr<const CalibrationResult> calibration;  ///< not yet accepted; null: none
+  const Inspection* extended_of = nullptr;               ///< the one that `extended` extends
   /// Rows of a results.csv, whose curves replace those of the survey; null: none is open.
   std::shared_ptr<const std::vector<Row>> experiment;
   std::string experiment_name;  ///< name of its file, for people
@@ -196,7 +209,8 @@ struct Requests {
   bool cancel = false;   ///< the running computation
   bool compute = false;  ///< inspect again with the same settings
   bool open_example = false;
-  bool calibrate = false;        ///< the camera, from a plane in the images
+  bool calibrate = false;  ///< the camera, from a plane in the images
+  bool undo_calibration = false;
   bool find_start = false;       ///< find a frame to initialize from
   std::optional<fs::path> open;  ///< a recording or a session
   std::vector<Screenshot> screenshots;

@@ -114,6 +114,10 @@ struct ChoiceKeys<TrajectoryFormat> {
   static constexpr std::array keys{"tum", "euroc", "kitti"};
 };
 
+struct Extrapolation;
+/// Returns the value of `extrapolated` in the JSON of a result.
+nlohmann::ordered_json to_json(const Extrapolation& after);
+
 /// Returns the estimated poses. Throws InputError if the initialization failed.
 CameraPath estimated_path(const Inspection& inspection, const ExportWorld& world = {});
 

@@ -307,6 +307,17 @@ ordered_json pose_uncertainty_json(const PoseUncertainty& uncertainty) {
           {"normal_sigma_deg", uncertainty.normal_sigma_deg}};
 }
 
+ordered_json masks_json(const Masks& masks) {
+  ordered_json json = ordered_json::array();
+  for (const Mask& mask : masks.areas) {
+    ordered_json corners = ordered_json::array();
+    for (const Eigen::Vector2d& corner : mask.corners_raw_px)
+      corners.push_back({corner.x(), corner.y()});
+    json.push_back({{"kind", to_string(mask.kind)}, {"corners_raw_px", corners}});
+  }
+  return json;
+}
+
 ordered_json value_json(const SettingValue& value) {
   return std::visit(
       [](const auto& plain) {
@@ -315,6 +326,8 @@ ordered_json value_json(const SettingValue& value) {
           return ordered_json(nullptr);
         else if constexpr (std::is_same_v<Plain, PointPair>)
           return ordered_json(plain.numbers);
+        else if constexpr (std::is_same_v<Plain, Masks>)
+          return masks_json(plain);
         else
           return ordered_json(plain);
       },

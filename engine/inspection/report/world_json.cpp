@@ -3,6 +3,7 @@
 // The metric scale and the chosen world of `run --json`.
 #include "engine/files/text_file.h"
 #include "engine/inspection/report/report.h"
+#include "engine/inspection/studies/extrapolation.h"
 
 #include <Eigen/Geometry>
 
@@ -69,6 +70,18 @@ void add_world(const Inspection& inspection, ordered_json& json) {
   if (measured || known_scale(inspection)) json["metric_scale"] = metric_scale_json(inspection);
   const bool scaled = !measured || measured->reason.empty();
   if (chosen && chosen->reason.empty() && scaled) json["world"] = world_json(inspection);
+}
+
+nlohmann::ordered_json to_json(const Extrapolation& after) {
+  ordered_json cameras = ordered_json::array();
+  for (const ExtrapolatedCamera& camera : after.cameras)
+    cameras.push_back({{"index", camera.frame},
+                       {"timestamp_ns", camera.timestamp_ns},
+                       {"p_wc", numbers(camera.pose.p_wc)},
+                       {"q_wc_xyzw", numbers(quaternion_xyzw(camera.pose.R_wc))},
+                       {"points", camera.points},
+                       {"median_px", camera.median_px}});
+  return {{"frames", cameras}, {"end", after.end}};
 }
 
 }  // namespace gpo

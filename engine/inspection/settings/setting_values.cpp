@@ -61,6 +61,31 @@ SettingValue point_pair_from(const Setting& setting, const std::string& text) {
   return pair;
 }
 
+Mask mask_from(const Setting& setting, const std::string& text) {
+  const std::size_t colon = text.find(':');
+  Mask mask;
+  mask.kind = choice<MaskKind>(text.substr(0, colon));
+  std::vector<double> numbers;
+  if (colon != std::string::npos)
+    for (const std::string& one : split(text.substr(colon + 1) + ",", ','))
+      numbers.push_back(std::get<double>(in_range(setting, one, parse_number(one), -1e6, 1e6)));
+  for (std::size_t k = 0; k + 1 < numbers.size(); k += 2)
+    mask.corners_raw_px.emplace_back(numbers[k], numbers[k + 1]);
+  if (numbers.size() < 4 || numbers.size() % 2 != 0)
+    refuse(
+        setting, text, "KIND:X1,Y1,X2,Y2 (a rectangle) or KIND:X1,Y1,X2,Y2,X3,Y3,... (a polygon)");
+  if (mask.area_px2() < 1) refuse(setting, text, "an area of at least one pixel");
+  return mask;
+}
+
+SettingValue masks_from(const Setting& setting, const std::string& text) {
+  Masks masks;
+  if (text == kNone) return masks;
+  for (const std::string& one : split(text + "/", '/'))
+    masks.areas.push_back(mask_from(setting, one));
+  return masks;
+}
+
 SettingValue choice_from(const Setting& setting,
                          const std::string& text,
                          const MethodTable& methods) {
@@ -98,6 +123,11 @@ std::string value_text(const SettingValue& value) {
     std::string operator()(const std::vector<std::int64_t>& ids) const {
       return ids.empty() ? kNone : fmt::format("{}", fmt::join(ids, ","));
     }
+    std::string operator()(const Masks& masks) const {
+      std::vector<std::string> areas;
+      for (const Mask& mask : masks.areas) areas.push_back(mask.text());
+      return areas.empty() ? kNone : fmt::format("{}", fmt::join(areas, "/"));
+    }
     std::string operator()(const PointPair& pair) const {
       return pair.empty() ? kNone : fmt::format("{}", fmt::join(pair.numbers, ","));
     }
@@ -124,6 +154,8 @@ SettingValue value_from(const Setting& setting,
       return ids_from(setting, text);
     case point_pair:
       return point_pair_from(setting, text);
+    case masks:
+      return masks_from(setting, text);
   }
   return {};
 }

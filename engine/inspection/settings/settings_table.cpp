@@ -35,6 +35,7 @@ constexpr SettingKind kind_of() {
   if constexpr (std::is_same_v<T, bool>) return SettingKind::on_off;
   if constexpr (std::is_same_v<T, double>) return SettingKind::number;
   if constexpr (std::is_same_v<T, PointPair>) return SettingKind::point_pair;
+  if constexpr (std::is_same_v<T, Masks>) return SettingKind::masks;
   return kIsWhole<T> ? SettingKind::whole : SettingKind::ids;
 }
 
@@ -197,6 +198,15 @@ void add_inlier_rows(std::vector<Setting>& rows) {
                      {.key = "exclude",
                       .title = "Excluded",
                       .help = "Ids of excluded tracks",
+                      .advanced = true,
+                      .by_hand = true}));
+  rows.push_back(row([](auto& s) -> auto& { return s.mask; },
+                     {.key = "mask",
+                      .title = "Masks",
+                      .help = "Areas of the reference frame, in pixels of the recorded, distorted "
+                              "image: not:X1,Y1,X2,Y2 leaves out the tracks in a rectangle, "
+                              "plane:X1,Y1,X2,Y2,X3,Y3,... finds plane 1 among the tracks in a "
+                              "polygon only; several with / in between",
                       .advanced = true,
                       .by_hand = true}));
 }

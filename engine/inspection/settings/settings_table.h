@@ -5,6 +5,7 @@
 #include "engine/frontend/tracking/tracking.h"
 #include "engine/initialize.h"
 #include "engine/recording/recording.h"
+#include "engine/window/tracks.h"
 
 #include <string_view>
 #include <variant>
@@ -33,6 +34,45 @@ struct ChoiceKeys<WorldUp> {
   static constexpr std::array keys{"plane", "gravity"};
 };
 
+/// leave_out: tracks inside are left out. plane: the first plane of the window is found among the
+/// tracks inside, all others among those outside.
+enum class MaskKind { leave_out, plane };
+
+template <>
+struct ChoiceKeys<MaskKind> {
+  static constexpr const char* name = "mask";
+  static constexpr std::array keys{"not", "plane"};
+};
+
+/// An area of the reference frame, in pixels of the recorded, distorted image. A track belongs to
+/// it by its place in that frame.
+struct Mask {
+  MaskKind kind = MaskKind::leave_out;
+  std::vector<Eigen::Vector2d> corners_raw_px = {};  ///< polygon; two: a rectangle
+
+  /// Returns the corners in turn, at least three.
+  std::vector<Eigen::Vector2d> outline() const;
+  bool contains(const Eigen::Vector2d& raw_px) const;
+  double area_px2() const;
+  std::string text() const;  ///< "not:10,20,110,80"
+  bool operator==(const Mask&) const = default;
+};
+
+/// Several masks, as not:X1,Y1,X2,Y2 (a rectangle) or plane:X1,Y1,X2,Y2,X3,Y3,... (a polygon) with
+/// slashes in between. Empty: none.
+struct Masks {
+  std::vector<Mask> areas = {};
+
+  bool contain(MaskKind kind, const Eigen::Vector2d& raw_px) const;
+  bool has(MaskKind kind) const;
+  bool operator==(const Masks&) const = default;
+};
+
+/// Returns the ids of the tracks in masks that leave them out.
+std::vector<std::int64_t> left_out(const Tracks& tracks, const Masks& masks);
+/// Returns `InlierOptions::on_first_plane`.
+std::vector<bool> on_first_plane(const Tracks& tracks, const Masks& masks);
+
 /// All inputs of a result other than the recording. Immutable in use. Each field has a row in
 /// `settings_table`.
 struct Settings {
@@ -40,6 +80,7 @@ struct Settings {
   int frames = 30;                          ///< length of the window
   Tracking tracking = Tracking::anchored;   ///< by the built-in front end
   std::vector<std::int64_t> exclude = {};   ///< ids of excluded tracks, ascending
+  Masks mask = {};                          ///< areas of the reference frame
   PointPair scale_points = {};              ///< `scale_length` apart, see `measure_scale`
   std::optional<double> scale_length = {};  ///< [m]
   double scale_length_sigma = 0;            ///< its standard deviation [m]
@@ -79,10 +120,11 @@ using SettingValue = std::variant<std::monostate,
                                   double,
                                   std::string,
                                   std::vector<std::int64_t>,
-                                  PointPair>;
+                                  PointPair,
+                                  Masks>;
 
 /// How a setting is typed, shown and stored.
-enum class SettingKind { on_off, whole, number, choice, ids, point_pair };
+enum class SettingKind { on_off, whole, number, choice, ids, point_pair, masks };
 
 /// Readers of a setting: all; the built-in front end; the test whether a track is an inlier; the
 /// methods that list it among their options (`Method::reads`); the estimation of gravity
@@ -141,7 +183,7 @@ std::vector<SettingChoice> choices_of(const Setting& setting, const MethodTable&
 const Setting& find_setting(std::string_view key);
 
 /// Returns a value as scripts, sessions and the command line write it: a number, a choice's key,
-/// on, off, ids or coordinates with commas or none, or default if it is left to the method.
+/// on, off, ids or coordinates with commas, masks or none, or default if it is left to the method.
 std::string value_text(const SettingValue& value);
 /// Parses a value. Throws SettingError if it is invalid.
 SettingValue value_from(const Setting& setting,

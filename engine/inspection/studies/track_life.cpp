@@ -85,8 +85,14 @@ std::string verdict_on(const Inspection& inspection, int plane, const Tally& tal
 std::string verdict_of(const Inspection& inspection, const TrackLife& life) {
   const Settings& settings = inspection.settings;
   if (std::ranges::find(settings.exclude, life.id) != settings.exclude.end()) return "excluded";
+  if (is_excluded(inspection, life.column)) return "in a mask that leaves out its tracks";
   const Tally tally(life, inspection.window->start);
   const auto plane = inspection.window->plane_of(life.column);
+  const Eigen::Vector2d place_px = inspection.tracks->raw_px[0].col(life.column);
+  const bool outside =
+      settings.mask.has(MaskKind::plane) && !settings.mask.contain(MaskKind::plane, place_px);
+  if (outside && !plane && inspection.window->leader == 0)
+    return "outside of the mask of the main plane";
   if (plane && *plane != inspection.window->leader && tally.seen > 0)
     return verdict_on(inspection, *plane, tally, life.column);
   if (tally.seen == 0) return "seen in the reference frame only";

@@ -185,8 +185,12 @@ ResultRow rms_row(const Initialization& result) {
 }
 
 int used_tracks(const Inspection& inspection) {
-  const int excluded = static_cast<int>(inspection.settings.exclude.size());
-  return inspection.window->track_count() - excluded;
+  const Settings& settings = inspection.settings;
+  int used = inspection.window->track_count() - static_cast<int>(settings.exclude.size());
+  if (settings.mask.areas.empty()) return used;
+  for (const std::int64_t id : left_out(*inspection.tracks, settings.mask))
+    used -= std::ranges::binary_search(settings.exclude, id) ? 0 : 1;
+  return used;
 }
 
 ResultGroup result_group(const Inspection& inspection) {

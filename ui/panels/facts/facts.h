@@ -43,6 +43,16 @@ constexpr const char* kNoTimes = "Screenshots omit times to remain comparable";
 /// Returns name, image size, frames and rate, gyroscope, ground truth and calibration.
 std::vector<std::string> recording_facts(const Recording& recording);
 
+/// Returns camera, gyroscope, times and truth of a recording with their uncertainties. Reads all
+/// time stamps.
+std::vector<ResultGroup> recording_groups(const Recording& recording);
+/// Returns each parameter of a calibrated camera before and after, and its change. One that the
+/// camera did not have was 0.
+std::vector<ResultRow> calibration_changes(const Camera& before, const Camera& after);
+/// Returns the lines of a regular grid in the undistorted image, as recorded [raw px]; the image's
+/// longer side has `cells`.
+std::vector<std::vector<Vector2d>> distortion_grid(const Camera& camera, int cells);
+
 /// Returns the results (null: none yet), times only with `timings`. `side`: cube's; 0: default.
 std::vector<ResultGroup> result_groups(const Inspection* inspection, bool timings, double side = 0);
 

@@ -14,10 +14,9 @@ void draw_subject(const PanelContext& ui, const ContextSubject& subject) {
   for (const ContextEntry& entry : context_entries()) {
     if (entry.kind != subject.kind) continue;
     const std::string line = entry.line(ui.state, subject);
-    const std::string name = line.substr(0, line.find(' '));
     if (ImGui::MenuItem(entry.title, nullptr, false, !line.empty()))
       push(ui.commands, RunAction{line});
-    if (const Action* action = find_action(name)) tooltip(action->tooltip);
+    if (const auto call = match_line(line)) tooltip(call->action->tooltip);
     if (line.empty() && entry.kind == ContextKind::plane && !subject.ray)
       tooltip(subject.why_not_there);
   }

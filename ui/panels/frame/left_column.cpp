@@ -61,6 +61,7 @@ struct SettingRows {
         return combo(setting, std::get<std::string>(value));
       case SettingKind::ids:
       case SettingKind::point_pair:
+      case SettingKind::masks:
         break;
     }
   }

@@ -22,6 +22,18 @@ WorkbenchState showing(const WorkbenchState& state, const Compared& other) {
   return shown;
 }
 
+/// Returns the state with the frames after the window in the window, if the current one is there.
+std::optional<WorkbenchState> showing_after(const WorkbenchState& state) {
+  const auto& extended = state.results.extended;
+  if (!extended || !state.results.inspection) return std::nullopt;
+  const int frame = state.view.frame - extended->window->start;
+  if (frame < *extended->extrapolated_from || frame >= extended->window->frame_count())
+    return std::nullopt;
+  WorkbenchState shown = state;
+  shown.results.inspection = extended;
+  return shown;
+}
+
 /// Names the result that the image shows in place of the current one, in its upper right corner.
 void draw_flip_label(ImDrawList& list, const ScreenRect& rect, const Compared& other) {
   const float s = overlay_scale();
@@ -136,7 +148,8 @@ std::string legend_tooltip(const LegendHit& hit) {
 }
 
 void zoom_and_pan(const Pointer& pointer) {
-  const bool drags_cube = drag_cube(pointer.ui, pointer.frame, pointer.mapping);
+  const bool drags_cube = takes_mask(pointer.ui.state, pointer.frame) ||
+                          drag_cube(pointer.ui, pointer.frame, pointer.mapping);
   const WorkbenchState& state = pointer.ui.state;
   const ImageZoom& zoom = state.view.image_zoom;
   const Camera& camera = state.document.recording->camera;
@@ -207,6 +220,7 @@ void open_menu(const Pointer& pointer, std::optional<std::int64_t> track) {
         number,
         plane == nullptr ? std::nullopt : point_on_plane(*inspection, frame, raw_px, *plane)));
   }
+  subjects.push_back({.kind = ContextKind::area, .title = "Masks of the reference frame"});
   open_context_menu(pointer.ui, std::move(subjects));
 }
 
@@ -228,6 +242,7 @@ void draw_overlays(const Pointer& pointer, const Rectangle& place, ImDrawList& l
   draw_pixel_grid(area, pointer.mapping, camera);
   draw_rectangle(pointer, list);
   draw_picked_points(state, area, view, pointer.mapping);
+  if (takes_mask(state, pointer.frame)) draw_unfinished_mask(ui, area, pointer.mapping);
   if (!ImGui::IsItemHovered()) return;
   const Vector2d at = to_image(pointer.mapping, pointer.at);
   const double scale = pointer.mapping.scale / ui.scale;
@@ -253,11 +268,14 @@ void draw_panel(const PanelContext& ui, const Rectangle& place) {
   const std::optional<LegendHit> legend = legend_under(pointer);
   const auto track = legend ? std::nullopt : pointer.track();
   if (ImGui::IsItemHovered() && Hover{track} != state.hover) push(ui.commands, HoverOver{{track}});
-  if (!legend)
+  const bool masks = takes_mask(state, frame);
+  if (masks)
+    draw_mask_by_mouse(ui, pointer.mapping);
+  else if (!legend)
     select(pointer, track);
   else if (ImGui::IsMouseReleased(ImGuiMouseButton_Left) && is_click(ui.scale))
     push(ui.commands, RunAction{legend->action});
-  open_menu(pointer, track);
+  if (!masks) open_menu(pointer, track);
   ImDrawList& list = *ImGui::GetWindowDrawList();
   draw_overlays(pointer, place, list);
   if (track) track_tooltip(ui, *track);
@@ -319,7 +337,11 @@ void camera_tooltip(const Inspection& inspection, int frame) {
 
 void image_panel(const PanelContext& ui, const Rectangle& place) {
   const auto other = flipped_result(ui.state);
-  if (!other) return draw_panel(ui, place);
+  if (!other) {
+    const auto after = showing_after(ui.state);
+    return draw_panel(after ? PanelContext{ui.with(*after), ui.views, ui.commands, ui.banner} : ui,
+                      place);
+  }
   const WorkbenchState state = showing(ui.state, *other);
   draw_panel({ui.with(state), ui.views, ui.commands, ui.banner}, place);
   const PanelScope scope("picture", place, {0, 0});
@@ -330,7 +352,10 @@ void image_panel(const PanelContext& ui, const Rectangle& place) {
 void image_alone(const PanelContext& ui, const Rectangle& place) {
   ImDrawList& list = *ImGui::GetBackgroundDrawList();
   const auto other = flipped_result(ui.state);
-  const Inspection* inspection = other ? other->inspection.get() : ui.inspection();
+  const auto after = other ? std::nullopt : showing_after(ui.state);
+  const Inspection* inspection = other   ? other->inspection.get()
+                                 : after ? after->results.inspection.get()
+                                         : ui.inspection();
   const Inspection empty = inspection ? Inspection{} : nothing_to_show(ui.state.document.recording);
   const int frame = update_image(ui);
   const ViewOptions options =

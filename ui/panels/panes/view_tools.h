@@ -19,4 +19,12 @@ void draw_picked_points(const WorkbenchState& state,
                         const FrameView& view,
                         const ImageMapping& mapping);
 
+/// Returns whether the mouse draws a mask in the frame, the reference frame.
+bool takes_mask(const WorkbenchState& state, int frame);
+/// Adds a corner where the last item is clicked, or finishes the mask: after a drag a rectangle,
+/// after a click at the first corner a polygon.
+void draw_mask_by_mouse(const PanelContext& ui, const ImageMapping& mapping);
+/// Draws the mask as far as it is drawn, and what to do.
+void draw_unfinished_mask(const PanelContext& ui, const Area& area, const ImageMapping& mapping);
+
 }  // namespace gpo

@@ -6,6 +6,7 @@
 #include "engine/inspection/studies/studies.h"
 #include "engine/window/tracks.h"
 #include "ui/views/image/image_geometry.h"
+#include "ui/views/image/mask_drawing.h"
 
 #include <algorithm>
 #include <map>
@@ -179,6 +180,7 @@ LegendRows legend_rows(const Canvas& canvas) {
   if (options.show.tracks)
     rows = options.colors ? legend_rows(*options.colors) : track_rows(canvas);
   for (LegendRow& row : rows) row.toggle = "tracks";
+  if (canvas.frame == 0) add_mask_rows(inspection.settings.mask, rows);
   if (!options.show.tracks) hidden("tracks", "tracks");
   const auto add = [&rows](Sign sign, Role role, const std::string& text, const char* toggle = "") {
     rows.push_back({sign, color_of(role), text, toggle});
@@ -212,6 +214,7 @@ LegendRows legend_rows(const Canvas& canvas) {
 
 void draw_results(const Canvas& canvas) {
   const ViewToggles& show = canvas.options.show;
+  if (canvas.frame == 0) draw_masks(canvas, canvas.inspection.settings.mask);
   if (show.tracks && show.tails) draw_tails(canvas);
   if (show.tracks) draw_tracks(canvas, [](int) { return true; });
   if (show.residuals) draw_residuals(canvas);
@@ -231,12 +234,40 @@ void draw_results(const Canvas& canvas) {
   if (straight) canvas.list.PopClipRect();
 }
 
+/// Returns whether the frame's camera was located after the window.
+bool is_extrapolated(const FrameView& view) {
+  const auto& from = view.inspection.extrapolated_from;
+  return from && view.in_window() >= *from && view.inside();
+}
+
+LegendRow extrapolation_row(const FrameView& view) {
+  const int after = view.in_window() - *view.inspection.extrapolated_from + 1;
+  return {Sign::frustum,
+          color_of(Role::uncertain),
+          fmt::format("extrapolated by PnP, {} after the window", counted(after, "frame"))};
+}
+
+/// Frames the image of an extrapolated camera in dashes.
+void draw_extrapolated_frame(const Canvas& canvas) {
+  const float s = overlay_scale();
+  const Vector2d from = canvas.mapping.origin + Vector2d::Constant(2 * s);
+  const Vector2d size = canvas.mapping.scale * Vector2d(canvas.camera.width, canvas.camera.height) -
+                        Vector2d::Constant(4 * s);
+  const std::array<Vector2d, 5> outline = {
+      from, from + Vector2d(size.x(), 0), from + size, from + Vector2d(0, size.y()), from};
+  const std::array pattern = {12.0 * s, 8.0 * s};
+  for (const auto& [start, end] : dashes_along(outline, pattern))
+    canvas.list.AddLine(to_imgui(start), to_imgui(end), imgui_color(Role::uncertain), 3 * s);
+}
+
 std::string heading(const FrameView& view) {
   const auto& times = view.inspection.recording->timestamps_ns;
   const double seconds = static_cast<double>(times[view.frame] - times.front()) * 1e-9;
   const std::string& method = view.inspection.settings.options.method.row().title;
   const char* lens = view.options.show.undistorted ? " · undistorted" : "";
-  return fmt::format("frame {} · {:.3f} s · {}{}", view.frame, seconds, method, lens);
+  const char* extrapolated = is_extrapolated(view) ? " · extrapolated" : "";
+  return fmt::format(
+      "frame {} · {:.3f} s · {}{}{}", view.frame, seconds, method, lens, extrapolated);
 }
 
 }  // namespace
@@ -259,6 +290,10 @@ LegendHits draw_image_view(const Area& area, const FrameView& view, ImageTexture
     draw_results(canvas);
     rows = legend_rows(canvas);
     if (view.in_window() == 0) rows.push_back({Sign::none, 0, "reference frame"});
+    if (is_extrapolated(view)) {
+      draw_extrapolated_frame(canvas);
+      rows.insert(rows.begin(), extrapolation_row(view));
+    }
   } else {
     const int first = inspection.window->start, last = first + inspection.window->frame_count() - 1;
     rows.push_back({Sign::none, 0, fmt::format("outside of the window {}–{}", first, last)});

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "engine/inspection/studies/extrapolation.h"
 #include "ui/views/overlay/overlay.h"
 
 namespace gpo {
@@ -23,7 +24,8 @@ struct ViewOptions {
   std::optional<ImageZoom> compare_zoom = {};  ///< for all columns; nullopt: around the cubes
   bool legend_line = false;  ///< the legend is in the margin, else a line over the image
   bool says_failure = true;  ///< a badge with the reason of a failed window
-  bool top_line = true;      ///< above the comparison: frame and meaning of the cubes' colors
+  std::shared_ptr<const Extrapolation> after = {};  ///< cameras after the window; null: none
+  bool top_line = true;  ///< above the comparison: frame and meaning of the cubes' colors
 
   bool operator==(const ViewOptions&) const = default;
 };

@@ -92,6 +92,38 @@ void draw_frame(const SceneOverlay& overlay) {
   overlay.closed(mark, rgb, 2.6F);
 }
 
+/// Returns the cameras located after the window that is shown; null if there are none.
+const Extrapolation* cameras_after(const FrameView& view) {
+  const Extrapolation* after = view.options.after.get();
+  const bool shown = after != nullptr && !after->cameras.empty() &&
+                     after->inspection->window == view.inspection.window;
+  return shown ? after : nullptr;
+}
+
+/// Draws their path in dashes, and the one of the current frame.
+void draw_after(const SceneOverlay& overlay) {
+  const FrameView& view = overlay.view;
+  const Extrapolation* after = cameras_after(view);
+  if (after == nullptr) return;
+  const float s = overlay_scale();
+  std::vector<Vector2d> path;
+  const auto add = [&](const Pose& pose) {
+    if (const auto pixel = overlay.at(pose.p_wc)) path.push_back(*pixel);
+  };
+  add(view.inspection.initialization->cameras.back());
+  for (const ExtrapolatedCamera& camera : after->cameras) add(camera.pose);
+  const std::array pattern = {5.0 * s, 4.0 * s};
+  for (const auto& [from, to] : dashes_along(path, pattern))
+    overlay.list.AddLine(to_imgui(from), to_imgui(to), imgui_color(Role::uncertain), 1.6F * s);
+  const auto current = std::ranges::find(after->cameras, view.frame, &ExtrapolatedCamera::frame);
+  if (current == after->cameras.end()) return;
+  const Inspection& inspection = view.inspection;
+  overlay.frustum_lines(
+      frustum(inspection.recording->camera, current->pose, frustum_depth(inspection)),
+      color_of(Role::uncertain),
+      1.6F);
+}
+
 void draw_axes(const SceneOverlay& overlay) {
   constexpr std::array kAxes = {Role::axis_x, Role::axis_y, Role::axis_z};
   const float s = overlay_scale();
@@ -160,6 +192,10 @@ LegendRows legend_rows(const FrameView& view) {
       add(Sign::square,
           color_of(Role::cube_base),
           (inspection.other_cubes.empty() ? "cube" : "cubes on all planes") + length);
+    if (const Extrapolation* after = cameras_after(view))
+      add(Sign::line,
+          color_of(Role::uncertain),
+          counted(after->cameras.size(), "extrapolated camera") + ", dashed");
     if (shows_up(view)) {
       const double sigma_deg = inspection.inertial->gravity_sigma_deg;
       add(Sign::line,
@@ -222,6 +258,7 @@ void draw_scene_view(const Area& area,
   list.AddImage(imgui_texture(texture), area.low(), area.high(), ImVec2(0, 1), ImVec2(1, 0));
   const SceneOverlay overlay{area, view, camera};
   draw_frame(overlay);
+  draw_after(overlay);
   const bool shows_cameras =
       !found_cameras(*inspection.initialization).empty() || estimate_from_truth(inspection);
   if (shows_cameras) draw_axes(overlay);

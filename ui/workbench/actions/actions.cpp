@@ -43,6 +43,8 @@ constexpr std::pair<std::string_view, const char*> kSynonyms[] = {
     {"gravity", "horizon up vertical level"},
     {"undistorted", "rectify lens"},
     {"exclude", "delete remove reject"},
+    {"mask not", "ignore region rectangle polygon area roi"},
+    {"mask plane", "region rectangle polygon area roi floor table"},
     {"explain-track", "why rejected outlier reason"},
     {"calibrate", "camera lens focal intrinsics"},
     {"find-start", "scan initialize search"},
@@ -87,6 +89,7 @@ std::vector<Action> make_actions() {
   add_file_actions(table);
   add_edit_actions(table);
   add_point_actions(table);
+  add_mask_actions(table);
   add_view_actions(table);
   add_time_actions(table);
   add_method_actions(table);

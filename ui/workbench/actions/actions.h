@@ -161,6 +161,10 @@ struct SelectTracks {
   void operator()(WorkbenchState& state) const { state.selection = selection; }
 };
 
+/// Moves the cube of the plane that a pixel X Y of the current frame shows there. Throws
+/// InputError.
+void put_cube_at_pixel(WorkbenchState& state, const Arguments& arguments);
+
 /// Commands collected while a frame is drawn, to be applied after it.
 using Commands = std::vector<Command>;
 inline void push(Commands& commands, Command command) { commands.push_back(std::move(command)); }
@@ -170,6 +174,7 @@ inline void apply(WorkbenchState& state, const Command& command) { command(state
 void add_file_actions(std::vector<Action>& table);
 void add_edit_actions(std::vector<Action>& table);
 void add_point_actions(std::vector<Action>& table);
+void add_mask_actions(std::vector<Action>& table);   ///< a part of the menu Edit
 void add_track_actions(std::vector<Action>& table);  ///< a part of the menu Edit
 void add_view_actions(std::vector<Action>& table);
 void add_time_actions(std::vector<Action>& table);

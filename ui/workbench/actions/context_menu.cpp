@@ -45,6 +45,10 @@ std::string line_of_exclusion(const State& state, const Subject& at) {
   return excluded ? "" : fmt::format("exclude {}", at.track);
 }
 
+std::string line_of_removal(const State& state, const Subject& /*at*/) {
+  return state.document.settings.mask.areas.empty() ? "" : "mask off";
+}
+
 std::string copy_of(const std::string& text) {
   return text.empty() ? "" : "copy " + as_argument(text);
 }
@@ -75,6 +79,11 @@ constexpr auto kEntries = std::to_array<ContextEntry>({
      [](const State&, const Subject& at) { return fmt::format("window-end {}", at.frame); }},
     {ContextKind::frame, "Bookmark, or remove its bookmark",
      [](const State&, const Subject& at) { return fmt::format("bookmark-at {}", at.frame); }},
+    {ContextKind::area, "Leave out an area ...",
+     [](const State&, const Subject&) { return std::string("mask not"); }},
+    {ContextKind::area, "Draw the area of the main plane ...",
+     [](const State&, const Subject&) { return std::string("mask plane"); }},
+    {ContextKind::area, "Remove all masks", line_of_removal},
 });
 // clang-format on
 

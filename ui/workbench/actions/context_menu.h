@@ -7,7 +7,7 @@
 namespace gpo {
 
 /// The kinds of things that have a context menu.
-enum class ContextKind { track, plane, number, frame };
+enum class ContextKind { track, plane, number, frame, area };
 
 /// The thing under the mouse when its context menu was opened.
 struct ContextSubject {

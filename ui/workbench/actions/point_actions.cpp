@@ -38,21 +38,6 @@ Vector2d pixel_of(const State& state, const Arguments& arguments) {
   return raw_px;
 }
 
-void move_cube_to_pixel(State& state, const Arguments& arguments) {
-  const int frame = frame_in_window(state);
-  const Inspection& inspection = *state.results.inspection;
-  const Vector2d raw_px = pixel_of(state, arguments);
-  const int leader = inspection.window->leader;
-  const int number = plane_near(inspection, frame, raw_px).value_or(leader);
-  const Plane* plane = estimated_plane(inspection, number);
-  const auto to =
-      plane == nullptr ? std::nullopt : point_on_plane(inspection, frame, raw_px, *plane);
-  if (!to)
-    throw InputError(
-        fmt::format("move-cube: {} is not in this direction", plane_title(inspection, number)));
-  move_cube(state, to, number == leader ? 0 : number + 1);
-}
-
 /// Returns the given pixels, else the picked ones, else those of the two selected tracks; the one
 /// selected last comes last.
 std::string point_pair(const State& state, const Arguments& arguments, std::size_t first) {
@@ -116,13 +101,28 @@ void set_origin(State& state, const Arguments& arguments) {
 
 }  // namespace
 
+void put_cube_at_pixel(WorkbenchState& state, const Arguments& arguments) {
+  const int frame = frame_in_window(state);
+  const Inspection& inspection = *state.results.inspection;
+  const Vector2d raw_px = pixel_of(state, arguments);
+  const int leader = inspection.window->leader;
+  const int number = plane_near(inspection, frame, raw_px).value_or(leader);
+  const Plane* plane = estimated_plane(inspection, number);
+  const auto to =
+      plane == nullptr ? std::nullopt : point_on_plane(inspection, frame, raw_px, *plane);
+  if (!to)
+    throw InputError(fmt::format(
+        "{}: {} is not in this direction", arguments.action, plane_title(inspection, number)));
+  move_cube(state, to, number == leader ? 0 : number + 1);
+}
+
 void add_point_actions(std::vector<Action>& table) {
   const MenuRows menu{table, "Edit"};
   menu.add({"move-cube",
-            "Move a cube",
-            "Moves the cube of the plane that a pixel of the current frame shows there"},
+            "Put a cube at a pixel",
+            "Does the same as put-cube X Y; the name of older scripts"},
            "X Y",
-           move_cube_to_pixel);
+           put_cube_at_pixel);
   menu.add({"pick",
             "Pick a point",
             "Picks a pixel of the current frame, of at most two, for set-scale and set-origin"},

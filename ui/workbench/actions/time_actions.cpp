@@ -272,6 +272,21 @@ void add_method_actions(std::vector<Action>& table) {
               "Estimates the camera of a recording without calibration from its images (about "
               "30 s) and saves it for the next time"},
              request_calibration);
+  menu.plain({"accept-calibration",
+              "Accept the calibration",
+              "Keeps the camera estimated last and closes its report"},
+             [](State& s) {
+               if (!s.results.calibration) throw InputError("no calibration is to be accepted");
+               s.results.calibration.reset();
+               say(s, "calibration accepted");
+             });
+  menu.plain({"undo-calibration",
+              "Go back to the camera before",
+              "Discards the camera estimated last, also for the next time"},
+             [](State& s) {
+               if (!s.results.calibration) throw InputError("no calibration is to be discarded");
+               s.requests.undo_calibration = true;
+             });
   menu.plain(
       {"find-start",
        "Find a start",

@@ -108,6 +108,7 @@ void add_single_track(const MenuRows& menu) {
 }
 
 void put_cube(State& state, const Arguments& arguments) {
+  if (arguments.size() == 2) return put_cube_at_pixel(state, arguments);
   const Vector3d ray(arguments.number(0), arguments.number(1), arguments.number(2));
   const int plane = arguments.size() > 3 ? arguments.whole_number(3) : 0;
   const auto& inspection = state.results.inspection;
@@ -130,10 +131,12 @@ void add_track_actions(std::vector<Action>& table) {
   add_single_track(menu);
   MenuRows{table, "Edit"}.add(
       {"put-cube",
-       "Put the cube",
-       "Moves the cube to where a ray of the reference camera (x right, y down, z forward) meets a "
-       "plane of the window, without a number the leading one"},
-      "X Y Z [PLANE]",
+       "Put a cube",
+       "Moves a cube: the one of the plane that a pixel X Y of the current frame shows, or to "
+       "where "
+       "a ray X Y Z of the reference camera (x right, y down, z forward) meets a plane of the "
+       "window, without a number the leading one"},
+      "X Y [Z [PLANE]]",
       put_cube);
   MenuRows{table, "Edit"}.anytime().add({"copy", "Copy a text", "Copies a text to the clipboard"},
                                         "TEXT ...",

@@ -200,4 +200,12 @@ BackgroundJob::Job Scan::next() {
   };
 }
 
+const ScannedStart* first_ready(const StartScan& scan) {
+  const auto ready = std::ranges::find_if(scan.starts, [](const ScannedStart& start) {
+    return start.ok && start.readiness == Readiness::ready;
+  });
+  const auto earlier = ready - scan.starts.begin();  // that are scanned
+  return ready != scan.starts.end() && ready->start <= earlier * scan.step ? &*ready : nullptr;
+}
+
 }  // namespace gpo

@@ -3,10 +3,8 @@
 #include "ui/workbench/work/worker.h"
 
 #include "engine/base/error.h"
-#include "engine/experiment/row.h"
 #include "ui/workbench/session/session_file.h"
 
-#include <algorithm>
 #include <utility>
 
 namespace gpo {
@@ -34,13 +32,16 @@ bool needs_all(const WorkbenchState& state, const Recording& first) {
 /// Shows a recording that was opened. Returns whether it is another one, and complete.
 bool show_recording(WorkbenchState& state,
                     const WorkerLink& link,
-                    const std::shared_ptr<const Recording>& recording,
+                    const Published& published,
                     Survey& survey) {
+  const auto& recording = published.recording;
   if (!recording || recording == state.document.recording) return false;
   if (!recording->complete && needs_all(state, *recording)) return false;
   apply_recording(state, recording);
+  state.results.calibration = published.calibration;
   survey.open(recording);
   if (!recording->complete) return false;
+  if (published.calibration) state.view.panes.drawer = find_pane("camera", drawers());
   if (link.remembers_files && !link.opening.empty()) {
     remember_file(link.opening);
     state.files.recent = recent_files();
@@ -54,7 +55,7 @@ bool receive(WorkbenchState& state, WorkerLink& link, Worker& worker, Survey& su
   link.worker = worker.status();
   link.survey = survey.status();
   const Published published = worker.latest();
-  const bool opened = show_recording(state, link, published.recording, survey);
+  const bool opened = show_recording(state, link, published, survey);
   if (published.inspection && published.inspection != link.published)
     survey.add(published.inspection);
   const Document& document = state.document;
@@ -78,7 +79,8 @@ bool receive(WorkbenchState& state, WorkerLink& link, Worker& worker, Survey& su
 }
 
 /// Returns whether to calibrate, on request or because the opened recording has a guessed camera.
-bool wants_calibration(WorkbenchState& state, const WorkerLink& link, bool opened) {
+bool wants_calibration(WorkbenchState& state, WorkerLink& link, bool opened) {
+  if (opened && std::exchange(link.undoing_calibration, false)) return false;
   const bool requested = std::exchange(state.requests.calibrate, false);
   const bool guessed = state.document.recording && state.document.recording->images &&
                        state.document.recording->camera_source == CameraSource::guess;
@@ -190,14 +192,6 @@ void cancel(WorkbenchState& state, WorkerLink& link, Worker& worker) {
 
 }  // namespace
 
-const ScannedStart* first_ready(const StartScan& scan) {
-  const auto ready = std::ranges::find_if(scan.starts, [](const ScannedStart& start) {
-    return start.ok && start.readiness == Readiness::ready;
-  });
-  const auto earlier = ready - scan.starts.begin();  // that are scanned
-  return ready != scan.starts.end() && ready->start <= earlier * scan.step ? &*ready : nullptr;
-}
-
 Worker::Opened Worker::with_inspector(std::shared_ptr<const Recording> recording) {
   const auto inspector = std::make_shared<Inspector>(recording);
   return {
@@ -237,6 +231,12 @@ void Worker::calibrate() {
   });
 }
 
+void Worker::undo_calibration() {
+  const auto lock = job_.lock();
+  if (!undo_calibration_ || next_opening_) return;
+  open_by([undo = undo_calibration_](const std::stop_token& /*stop*/) { return undo(); });
+}
+
 void Worker::request(const Settings& settings) {
   const auto lock = job_.lock();
   if (!published_.recording) return;
@@ -266,7 +266,11 @@ BackgroundJob::Job Worker::next() {
       job_.publish(stop, [&] {
         inspect_ = std::move(opened.inspect);
         calibrate_ = std::move(opened.calibrate);
-        published_ = {std::move(opened.recording), nullptr, published_.generation + 1};
+        undo_calibration_ = std::move(opened.undo_calibration);
+        published_ = {std::move(opened.recording),
+                      nullptr,
+                      published_.generation + 1,
+                      std::move(opened.calibration)};
         next_settings_.reset();
         if (!opened.rest) return;
         next_opening_ = [this, rest = std::move(opened.rest)](const std::stop_token& token) {
@@ -291,62 +295,6 @@ BackgroundJob::Job Worker::next() {
 Progress Worker::progress(const std::stop_token& stop, const std::string& prefix) {
   return [this, stop, prefix](const std::string& stage, int done, int of) {
     job_.report(stop, prefix + stage, done, of);
-  };
-}
-
-FileReader::FileReader(std::function<void()> changed)
-    : job_([this] { return next(); }, std::move(changed)) {}
-
-void FileReader::read(const fs::path& file,
-                      const MethodTable& methods,
-                      const ReadMethods& read_methods) {
-  const auto lock = job_.lock();
-  job_.cancel();
-  wanted_ = file;
-  methods_ = methods;
-  read_methods_ = read_methods;
-  read_.reset();
-  job_.wake();
-}
-
-void FileReader::cancel() {
-  const auto lock = job_.lock();
-  job_.cancel();
-  wanted_.clear();
-  read_.reset();
-}
-
-JobStatus FileReader::status() const {
-  const auto lock = job_.lock();
-  return job_.status();
-}
-
-std::optional<ReadFile> FileReader::take() {
-  const auto lock = job_.lock();
-  return std::exchange(read_, {});
-}
-
-BackgroundJob::Job FileReader::next() {
-  if (wanted_.empty()) return nullptr;
-  return [this,
-          file = std::exchange(wanted_, {}),
-          known = SessionMethods{methods_},
-          read_methods = read_methods_](const std::stop_token& stop) {
-    job_.report(stop, "reading " + file.filename().string(), 0, 0);
-    ReadFile read{file};
-    try {
-      // By its name, too: then the error names the missing column, not a video.
-      if (file.filename() == "results.csv" || is_results(file)) {
-        read.rows = std::make_shared<const std::vector<Row>>(read_results(file, known.table));
-      } else if (is_session(file)) {
-        const SessionMethods methods = read_methods ? read_methods(file) : known;
-        read.session = read_session(file, methods.table);
-        read.add_methods = methods.add;
-      }
-    } catch (const std::exception& error) {
-      read.error = message_of(error);
-    }
-    job_.publish(stop, [&] { read_ = std::move(read); });
   };
 }
 
@@ -378,6 +326,10 @@ void synchronize(
   if (!open && read) opening = open_read(state, link, worker, std::move(*read));
   link.loading = open_example || opening || (link.loading && link.worker.busy && !opened);
   if (calibrate) worker.calibrate();
+  if (std::exchange(state.requests.undo_calibration, false)) {
+    worker.undo_calibration();
+    link.undoing_calibration = true;
+  }
   link.calibrating = calibrate || (link.calibrating && link.worker.busy && !opening);
   if (compute) {
     worker.request(state.document.settings);
@@ -391,6 +343,9 @@ void synchronize(
   const bool studies = (needs_of(state.view.panes).study || wants_report(state)) && !waits;
   survey.study(studies ? state.results.inspection : nullptr);
   link.survey = survey.status();
+  const JobStatus after =
+      follow_window(state, waits ? nullptr : link.published, *link.extrapolator);
+  if (!link.survey.busy) link.survey = after;
   if (open) link.reading = link.reader->status();
   const bool found = scan_for_starts(state, link, scan);
   // Busy at least until the next call.

@@ -5,6 +5,7 @@
 #include "engine/base/internal/background_job.h"
 #include "engine/inspection/inspector.h"
 #include "ui/workbench/state.h"
+#include "ui/workbench/work/extrapolator.h"
 
 #include <functional>
 #include <stop_token>
@@ -91,6 +92,8 @@ struct Published {
   std::shared_ptr<const Recording> recording;    ///< null until one is open
   std::shared_ptr<const Inspection> inspection;  ///< for `recording`; null until it is finished
   std::uint64_t generation = 0;
+  /// The calibration that `recording` has its camera from; null: none since it was opened.
+  std::shared_ptr<const CalibrationResult> calibration = {};
 };
 
 /// Opens and inspects recordings in the background; the latest request wins. Thread-safe.
@@ -105,7 +108,10 @@ class Worker {
   struct Opened {
     std::shared_ptr<const Recording> recording;
     Inspect inspect;
-    Calibrate calibrate = {};  ///< null: impossible
+    Calibrate calibrate = {};                                   ///< null: impossible
+    std::shared_ptr<const CalibrationResult> calibration = {};  ///< null: not calibrated
+    /// Discards the calibration and returns the recording as it was before. Null: impossible.
+    std::function<Opened()> undo_calibration = {};
     /// If `recording` is incomplete: opens all of it, right after this is published.
     std::function<Opened(const std::stop_token&, const Progress&)> rest = {};
   };
@@ -119,6 +125,8 @@ class Worker {
   void open(const fs::path& path);
   /// Publishes the open recording with a camera estimated from its images, if that is possible.
   void calibrate();
+  /// Publishes the open recording as it was before its calibration, if it was calibrated.
+  void undo_calibration();
   /// Inspects the open recording, if any, unless another one is opened meanwhile.
   void request(const Settings& settings);
   /// Stops the running job and discards waiting requests.
@@ -141,8 +149,9 @@ class Worker {
   std::optional<Settings> next_settings_;
   bool opening_ = false;  ///< waiting or running
   Published published_;
-  Inspect inspect_;      ///< for the open recording
-  Calibrate calibrate_;  ///< for the open recording
+  Inspect inspect_;                           ///< for the open recording
+  Calibrate calibrate_;                       ///< for the open recording
+  std::function<Opened()> undo_calibration_;  ///< for the open recording; null: not calibrated
   BackgroundJob job_;
 };
 
@@ -198,16 +207,18 @@ struct WorkerLink {
   std::shared_ptr<const Inspection> published;  ///< before its cube was moved
   std::optional<Vector3d> cube_ray;             ///< to which it was moved
   std::unique_ptr<FileReader> reader = std::make_unique<FileReader>();
+  std::unique_ptr<Extrapolator> extrapolator = std::make_unique<Extrapolator>();
   std::map<int, Vector3d> other_cube_rays;  ///< like `UndoStep::other_cube_rays`
   JobStatus worker, survey, scan, reading;
-  std::string error;             ///< the last error of the worker that was shown
-  fs::path opening;              ///< being opened; remembered once it is open
-  bool remembers_files = false;  ///< in the user's list of recent files
-  bool loading = false;          ///< a recording, until it is complete, fails or is replaced
-  bool calibrating = false;      ///< until it finishes, fails or is replaced
-  bool calibrates = false;       ///< every recording opened with a guessed camera
-  bool finding_start = false;    ///< until the scan has found one or is replaced
-  bool survey_canceled = false;  ///< and the scan; until something else is computed
+  std::string error;                 ///< the last error of the worker that was shown
+  fs::path opening;                  ///< being opened; remembered once it is open
+  bool remembers_files = false;      ///< in the user's list of recent files
+  bool loading = false;              ///< a recording, until it is complete, fails or is replaced
+  bool calibrating = false;          ///< until it finishes, fails or is replaced
+  bool undoing_calibration = false;  ///< until the recording is opened as it was before
+  bool calibrates = false;           ///< every recording opened with a guessed camera
+  bool finding_start = false;        ///< until the scan has found one or is replaced
+  bool survey_canceled = false;      ///< and the scan; until something else is computed
   FileReader::ReadMethods read_methods;  ///< null: sessions add none
 
   bool busy() const { return worker.busy || survey.busy || scan.busy || reading.busy; }

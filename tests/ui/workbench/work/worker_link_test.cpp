@@ -1,120 +1,19 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/base/error.h"
-#include "tests/engine/desk.h"
+#include "tests/ui/workbench/work/worker_link.h"
+
 #include "tests/engine/test_folder.h"
-#include "ui/workbench/actions/actions.h"
 #include "ui/workbench/session/session_file.h"
-#include "ui/workbench/work/worker.h"
 
 #include <algorithm>
-#include <atomic>
 #include <cstdlib>
-#include <mutex>
-#include <thread>
 
 #include <gmock/gmock.h>
 
 namespace gpo {
 namespace {
 
-using testing::ElementsAre, testing::IsEmpty;
-
-/// The worker only records the requested starts. While `hold_`, its jobs last until stopped, and
-/// the recording "slow" is not open.
-class WorkerLinkTest : public testing::Test {
- protected:
-  WorkerLinkTest() { link_.example = "example"; }
-  Worker::Opened open(const std::filesystem::path& path) {
-    if (path.filename() == "bad") throw InputError("bad: no such folder");
-    while (path.filename() == "slow" && hold_) std::this_thread::yield();
-    auto recording = std::make_shared<Recording>();
-    if (path == "pictures") *recording = *test::desk();
-    recording->name = path.string();
-    if (path == "pictures") return opened(recording);
-    for (int i = 0; i < 60; ++i) recording->timestamps_ns.push_back(i * 33'000'000);
-    if (path == "long.mkv") return first_frames(recording);
-    if (path == "bare.mp4") {
-      recording->camera_source = CameraSource::guess;
-      recording->images = std::make_shared<const FrameCache>(60, [](int) { return cv::Mat(); });
-    }
-    return opened(recording);
-  }
-  /// The first 60 of 900 frames.
-  Worker::Opened first_frames(const std::shared_ptr<Recording>& recording) {
-    recording->path = "long.mkv";
-    recording->complete = false;
-    Worker::Opened first = opened(recording);
-    first.rest = [this, recording](const std::stop_token& stop, const Progress&) {
-      hold(stop);
-      auto whole = std::make_shared<Recording>(*recording);
-      whole->complete = true;
-      for (int i = 60; i < 900; ++i) whole->timestamps_ns.push_back(i * std::int64_t{33'000'000});
-      return opened(whole);
-    };
-    return first;
-  }
-  Worker::Opened opened(const std::shared_ptr<Recording>& recording) {
-    return {
-        recording,
-        [this, recording](const Settings& settings, const std::stop_token& stop, const Progress&) {
-          {
-            const std::lock_guard lock(mutex_);
-            starts_.push_back(settings.start);
-          }
-          hold(stop);
-          auto inspection = std::make_shared<Inspection>();
-          inspection->recording = recording;
-          inspection->settings = settings;
-          return inspection;
-        },
-        [this, recording](const std::stop_token& stop, const Progress&) {
-          hold(stop);
-          if (stop.stop_requested()) return Worker::Opened{};
-          Worker::Opened opened = open("desk");
-          auto calibrated = std::make_shared<Recording>(*recording);
-          calibrated->camera_source = CameraSource::self_calibrated;
-          opened.recording = calibrated;
-          return opened;
-        }};
-  }
-  void hold(const std::stop_token& stop) {
-    while (hold_ && !stop.stop_requested()) std::this_thread::yield();
-  }
-  void synchronize() { gpo::synchronize(state_, link_, worker_, survey_, scan_); }
-  void run(const char* action) { apply(state_, RunAction{action}); }
-  void run_once(const char* action) {
-    run(action);
-    synchronize();
-  }
-  void run_and_settle(const char* action) {
-    run(action);
-    settle();
-  }
-  void open_and_settle(const std::filesystem::path& path) {
-    apply(state_, OpenPath{path});
-    settle();
-  }
-  void settle() {
-    do {
-      synchronize();
-    } while (link_.worker.busy || link_.reading.busy);
-    synchronize();
-  }
-  std::vector<int> starts() {
-    const std::lock_guard lock(mutex_);
-    return starts_;
-  }
-
-  std::atomic<bool> hold_ = false;
-  std::mutex mutex_;
-  std::vector<int> starts_;
-  WorkbenchState state_;
-  WorkerLink link_;
-  Survey survey_;
-  Scan scan_;
-  Worker worker_{[this](const std::filesystem::path& path, const auto&...) { return open(path); }};
-};
+using test::WorkerLinkTest, testing::ElementsAre, testing::IsEmpty;
 
 TEST_F(WorkerLinkTest, ShowsFirstFramesOfAVideoWhileItIsReadOn) {
   hold_ = true;
@@ -357,43 +256,6 @@ TEST_F(WorkerLinkTest, KeepsRequestsOfOthers) {
   EXPECT_TRUE(state_.requests.quit);
   EXPECT_EQ(state_.requests.screenshots.size(), 1U);
   EXPECT_FALSE(state_.requests.compute);
-}
-
-TEST_F(WorkerLinkTest, CalibrationKeepsFrameAndBookmarks) {
-  open_and_settle("bare.mp4");
-  apply(state_, GoToFrame{7});
-  state_.document.bookmarks = {{7, "here"}};
-  run_and_settle("calibrate");
-  EXPECT_EQ(state_.document.recording->camera_source, CameraSource::self_calibrated);
-  EXPECT_EQ(state_.view.frame, 7);
-  EXPECT_THAT(state_.document.bookmarks, ElementsAre(Bookmark{7, "here"}));
-  ASSERT_NE(state_.results.inspection, nullptr);
-}
-
-TEST_F(WorkerLinkTest, CanceledCalibrationKeepsTheGuessedCamera) {
-  open_and_settle("bare.mp4");
-  hold_ = true;
-  run_once("calibrate");
-  EXPECT_TRUE(link_.worker.busy);
-  state_.requests.cancel = true;
-  synchronize();
-  EXPECT_EQ(state_.messages.text, "Calibration canceled, nothing was saved");
-  hold_ = false;
-  settle();
-  EXPECT_EQ(state_.document.recording->camera_source, CameraSource::guess);
-}
-
-TEST_F(WorkerLinkTest, CalibratesOpenedRecordingsWithGuessedCameraOnRequest) {
-  link_.calibrates = true;
-  open_and_settle("bare.mp4");
-  EXPECT_EQ(state_.document.recording->camera_source, CameraSource::self_calibrated);
-}
-
-TEST_F(WorkerLinkTest, RefusesToCalibrateWithoutImages) {
-  open_and_settle("desk");
-  run("calibrate");
-  EXPECT_FALSE(state_.requests.calibrate);
-  EXPECT_THAT(state_.messages.text, testing::HasSubstr("calibrate: the recording has no images"));
 }
 
 }  // namespace

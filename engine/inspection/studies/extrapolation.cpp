@@ -1,0 +1,224 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "engine/inspection/studies/extrapolation.h"
+
+#include "engine/base/error.h"
+#include "engine/geometry/camera_resection.h"
+#include "engine/geometry/homography.h"
+#include "engine/geometry/plane.h"
+
+#include <algorithm>
+#include <limits>
+
+#include <Eigen/LU>
+#include <fmt/format.h>
+
+namespace gpo {
+namespace {
+
+using Eigen::Matrix2Xd;
+using Eigen::Vector3d;
+
+constexpr double kUnseen = std::numeric_limits<double>::quiet_NaN();
+
+/// A point of a plane, where the ray of the reference camera meets it.
+struct LocatingPoint {
+  int track;  ///< column
+  Vector3d position;
+};
+
+/// Returns the points of all planes with an estimate, from the positions in the reference frame.
+std::vector<LocatingPoint> points_of_planes(const Inspection& inspection) {
+  const Window& window = *inspection.window;
+  const Eigen::Matrix3d K_inverse = window.K.inverse();
+  std::vector<LocatingPoint> points;
+  for (int j = 0; j < window.track_count(); ++j) {
+    if (!window.points_px[0].col(j).allFinite()) continue;
+    const auto number =
+        window.is_inlier_track(j) ? std::optional(window.leader) : window.plane_of(j);
+    const Plane* plane = number ? estimated_plane(inspection, *number) : nullptr;
+    if (plane == nullptr) continue;
+    const Vector3d ray = K_inverse * window.points_px[0].col(j).homogeneous();
+    if (const auto point = intersect(*plane, Pose{}, ray)) points.push_back({j, *point});
+  }
+  return points;
+}
+
+/// Returns the tracks of the window and of the frames after it; null if stopped.
+std::shared_ptr<const Tracks> longer_tracks(const Inspection& inspection,
+                                            int frames,
+                                            const std::stop_token& stop,
+                                            const Progress& progress) {
+  const Recording& recording = *inspection.recording;
+  const FrameSpan span{inspection.window->start, frames};
+  if (!recording.tracks.empty()) return chosen_tracks(recording, span).tracks;
+  const auto followed =
+      followed_tracks(recording, span, inspection.settings.tracking, stop, progress);
+  return followed ? followed->tracks : nullptr;
+}
+
+/// Returns the undistorted positions in a frame; NaN: not seen, or not in the window.
+Matrix2Xd undistorted(const Inspection& inspection, const Tracks& tracks, int frame) {
+  const Camera& camera = inspection.recording->camera;
+  Matrix2Xd points_px = Matrix2Xd::Constant(2, tracks.track_count(), kUnseen);
+  for (int j = 0; j < tracks.track_count(); ++j)
+    if (tracks.seen(frame, j) && inspection.window->points_px[0].col(j).allFinite())
+      points_px.col(j) = undistort(camera, tracks.raw_px[frame].col(j));
+  return points_px;
+}
+
+/// A frame after the window and its points.
+struct LaterFrame {
+  ExtrapolatedCamera camera;
+  Matrix2Xd points_px;
+};
+
+/// Returns the pose that fits better: the one before, refined, or another one without a start.
+std::optional<Resection> located(const Pose& before,
+                                 const Eigen::Matrix3Xd& points_w,
+                                 const Matrix2Xd& pixels,
+                                 const Eigen::Matrix3d& K) {
+  const auto followed = refine_pose(before, points_w, pixels, K);
+  const auto anew = resect_camera(points_w, pixels, K);
+  if (!followed || !anew) return followed ? followed : anew;
+  return anew->median_px < followed->median_px ? anew : followed;
+}
+
+/// Locates a frame's camera. Throws InputError with the reason if it cannot be located.
+LaterFrame locate(const Inspection& inspection,
+                  const std::vector<LocatingPoint>& points,
+                  const Pose& before,
+                  Matrix2Xd points_px) {
+  const Eigen::Matrix3d& K = inspection.window->K;
+  std::vector<int> seen;
+  for (int k = 0; k < std::ssize(points); ++k)
+    if (points_px.col(points[k].track).allFinite()) seen.push_back(k);
+  const auto count = static_cast<int>(seen.size());
+  if (count < kLeastLocatingPoints)
+    throw InputError(fmt::format("{} of the planes seen, at least {} are needed",
+                                 counted(count, "point"),
+                                 kLeastLocatingPoints));
+  Eigen::Matrix3Xd points_w(3, count);
+  Matrix2Xd pixels(2, count);
+  for (int k = 0; k < count; ++k) {
+    points_w.col(k) = points[seen[k]].position;
+    pixels.col(k) = points_px.col(points[seen[k]].track);
+  }
+  const auto found = located(before, points_w, pixels, K);
+  if (!found) throw InputError("no camera has the points of the planes in front of it");
+  const double threshold_px = inspection.window->threshold_px;
+  int agreeing = 0;
+  for (int k = 0; k < count; ++k) {
+    const Vector3d seen_by = K * to_camera(found->pose, points_w.col(k));
+    const double error_px = (seen_by.hnormalized() - pixels.col(k)).norm();
+    agreeing += seen_by.z() > 0 && error_px <= threshold_px ? 1 : 0;
+  }
+  if (agreeing < kLeastLocatingPoints || 2 * agreeing < count)
+    throw InputError(fmt::format("{} of {} of the planes agree within {:.1f} px",
+                                 agreeing,
+                                 counted(count, "point"),
+                                 threshold_px));
+  LaterFrame later{{.pose = found->pose, .points = agreeing, .median_px = found->median_px},
+                   std::move(points_px)};
+  return later;
+}
+
+/// Appends a frame to a window: its inliers agree with the homographies of planes and camera.
+void append_frame(const Inspection& inspection, const LaterFrame& later, Window& window) {
+  const Eigen::Matrix3d K_inverse = window.K.inverse();
+  const auto homography = [&](const Plane& plane) -> Eigen::Matrix3d {
+    const Eigen::Matrix3d R_cw = later.camera.pose.R_wc.transpose();
+    const Vector3d tau = -later.camera.pose.p_wc / plane.distance;
+    return window.K * R_cw * (Eigen::Matrix3d::Identity() - tau * plane.normal.transpose()) *
+           K_inverse;
+  };
+  const auto inliers_of = [&](const Eigen::Matrix3d& H, const auto& candidate) {
+    std::vector<bool> inlier(window.track_count(), false);
+    for (int j = 0; j < window.track_count(); ++j)
+      inlier[j] = candidate(j) &&
+                  (transfer(H, window.points_px[0].col(j)) - later.points_px.col(j)).norm() <=
+                      window.threshold_px;
+    return inlier;
+  };
+  const Eigen::Matrix3d H = homography(inspection.initialization->plane);
+  window.timestamps_ns.push_back(later.camera.timestamp_ns);
+  window.H_i1.push_back(H);
+  window.inlier.push_back(
+      inliers_of(H, [&](int j) { return inspection.window->is_inlier_track(j); }));
+  for (int k = 0; k < std::ssize(window.planes); ++k) {
+    WindowPlane& plane = window.planes[k];
+    const Plane* estimate = estimated_plane(inspection, k);
+    plane.H_i1.push_back(estimate != nullptr ? homography(*estimate)
+                                             : Eigen::Matrix3d::Constant(kUnseen).eval());
+    plane.inlier.push_back(inliers_of(
+        plane.H_i1.back(), [&](int j) { return std::ranges::binary_search(plane.tracks, j); }));
+  }
+  window.points_px.push_back(later.points_px);
+  window.R_wc.push_back(later.camera.pose.R_wc);
+}
+
+std::shared_ptr<const Inspection> extended(const Inspection& inspection,
+                                           const std::shared_ptr<const Tracks>& tracks,
+                                           const std::vector<LaterFrame>& later) {
+  if (later.empty()) return nullptr;
+  Inspection longer = inspection;
+  Window window = *inspection.window;
+  Initialization result = *inspection.initialization;
+  longer.extrapolated_from = window.frame_count();
+  window.noise_ratio.clear();
+  window.lens_moves_px.clear();
+  window.row_delay_moves_px.clear();
+  for (const LaterFrame& frame : later) {
+    append_frame(inspection, frame, window);
+    result.cameras.push_back(frame.camera.pose);
+  }
+  const int frames = window.frame_count();
+  longer.tracks = beginning(tracks, frames);
+  longer.window = std::make_shared<const Window>(std::move(window));
+  longer.initialization = std::make_shared<const Initialization>(std::move(result));
+  // A board's truth takes too long; without truth there is no true cube.
+  longer.truth =
+      inspection.recording->truth
+          ? window_truth(*inspection.recording, {inspection.window->start, frames}, {}, {})
+          : nullptr;
+  if (!longer.truth) longer.true_cube.reset();
+  return std::make_shared<const Inspection>(std::move(longer));
+}
+
+}  // namespace
+
+std::shared_ptr<const Extrapolation> extrapolate(
+    const std::shared_ptr<const Inspection>& inspection,
+    int frames,
+    const std::stop_token& stop,
+    const Progress& progress) {
+  const Window& window = *inspection->window;
+  const Recording& recording = *inspection->recording;
+  const int known = window.frame_count();
+  const int last = std::min(recording.frame_count(), window.start + known + frames);
+  Extrapolation found{inspection};
+  if (!inspection->initialization->ok) throw InputError("the window is not initialized");
+  const auto tracks = longer_tracks(*inspection, last - window.start, stop, progress);
+  if (!tracks) return nullptr;
+  const std::vector<LocatingPoint> points = points_of_planes(*inspection);
+  std::vector<LaterFrame> later;
+  for (int i = known; i < last - window.start && found.end.empty(); ++i) {
+    if (stop.stop_requested()) return nullptr;
+    const Pose& before =
+        later.empty() ? inspection->initialization->cameras.back() : later.back().camera.pose;
+    try {
+      LaterFrame frame = locate(*inspection, points, before, undistorted(*inspection, *tracks, i));
+      frame.camera.frame = window.start + i;
+      frame.camera.timestamp_ns = recording.timestamps_ns[window.start + i];
+      found.cameras.push_back(frame.camera);
+      later.push_back(std::move(frame));
+    } catch (const InputError& error) {
+      found.end = fmt::format("frame {}: {}", window.start + i, error.what());
+    }
+  }
+  if (found.end.empty() && last == recording.frame_count()) found.end = "the recording ends";
+  found.extended = extended(*inspection, tracks, later);
+  return std::make_shared<const Extrapolation>(std::move(found));
+}
+
+}  // namespace gpo
