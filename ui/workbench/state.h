@@ -5,6 +5,7 @@
 #include "engine/experiment/experiment.h"
 #include "engine/exports/exports.h"
 #include "engine/inspection/inspection.h"
+#include "engine/inspection/live/live_window.h"
 #include "engine/inspection/settings/settings_table.h"
 #include "engine/inspection/studies/studies.h"
 #include "engine/recording/recording.h"
@@ -173,6 +174,8 @@ struct ViewState {
   int tour = 0;                        ///< step that is shown, counts from 1; 0: none
   std::optional<std::string> palette;  ///< typed text; nullopt: closed
   std::optional<Browse> browse;        ///< nullopt: closed
+  /// Cameras to choose from, as they were when the list was opened; nullopt: closed.
+  std::optional<std::vector<CameraDevice>> sources;
 };
 
 /// Results computed for the document or read from files.
@@ -192,9 +195,12 @@ struct Requests {
   bool cancel = false;   ///< the running computation
   bool compute = false;  ///< inspect again with the same settings
   bool open_example = false;
-  bool calibrate = false;        ///< the camera, from a plane in the images
-  bool find_start = false;       ///< find a frame to initialize from
-  std::optional<fs::path> open;  ///< a recording or a session
+  bool calibrate = false;                  ///< the camera, from a plane in the images
+  bool find_start = false;                 ///< find a frame to initialize from
+  std::optional<fs::path> open;            ///< a recording or a session
+  std::optional<std::string> live;         ///< address of a source that the user named
+  bool freeze = false;                     ///< the live source
+  std::optional<fs::path> save_recording;  ///< folder or bag to write the open recording to
   std::vector<Screenshot> screenshots;
   std::optional<MovieRequest> movie;
   std::vector<PendingExport> exports;
@@ -226,6 +232,8 @@ struct WorkbenchState {
   Hover hover;
   ComputedResults results;
   Requests requests;
+  std::optional<LiveView> live;  ///< the source that is shown; nullopt: none
+  std::string live_source;       ///< address of the last one; empty: none yet
   MessageLog messages;
   SessionFiles files;
 
@@ -311,6 +319,9 @@ std::vector<int> curve_lengths(int frames);
 
 /// The inspections that the open views need, at shorter lengths, too, if the curves are open.
 std::vector<Settings> wanted_inspections(const WorkbenchState& state);
+
+/// Returns whether the open recording was made by freezing a live source.
+bool is_frozen(const WorkbenchState& state);
 
 /// The current result first, then the computed compared ones of the same window. Empty before.
 std::vector<ShownResult> shown_results(const WorkbenchState& state);

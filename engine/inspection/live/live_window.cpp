@@ -36,13 +36,13 @@ LiveImages images_of_window(const std::vector<LiveImage>& window) {
   return LiveBuffer(0, 0).images(window);
 }
 
-/// Returns the largest translation from the reference frame [plane distance]; 0 if unknown.
-double baseline_of(const Inspection& inspection) {
+/// Returns the largest translation from the reference frame [plane distance]; nullopt if unknown.
+std::optional<double> baseline_of(const Inspection& inspection) {
   const Initialization& found = *inspection.initialization;
-  double baseline = found.verdict ? found.verdict->largest_translation.value_or(0) : 0;
+  auto baseline = found.verdict ? found.verdict->largest_translation : std::nullopt;
   if (found.ok)
     for (const Pose& camera : found.cameras)
-      baseline = std::max(baseline, camera.p_wc.norm() / found.plane.distance);
+      baseline = std::max(baseline.value_or(0), camera.p_wc.norm() / found.plane.distance);
   return baseline;
 }
 
@@ -147,16 +147,16 @@ std::optional<LiveAnswer> inspect(LiveTask task,
 std::string missing_for_ready(const Inspection& inspection) {
   if (is_ready(inspection)) return "";
   const Initialization& found = *inspection.initialization;
-  const std::string why = found.ok || !found.verdict ? found.reason : found.verdict->reason;
-  const auto sigma_deg = normal_sigma_deg(inspection);
-  const double baseline = baseline_of(inspection);
-  const double needed = std::max(
-      kReadyTranslation, sigma_deg ? baseline * *sigma_deg / kLiveSigma_deg : kReadyTranslation);
-  if (inspection.recording->camera_source == CameraSource::guess && found.ok && needed <= baseline)
+  const std::string why = found.ok && found.verdict ? found.verdict->reason : found.reason;
+  const auto baseline = baseline_of(inspection);
+  if (!baseline) return why;
+  const double sigma_deg = normal_sigma_deg(inspection).value_or(0);
+  const double needed = std::max(kReadyTranslation, *baseline * sigma_deg / kLiveSigma_deg);
+  if (needed > *baseline)
+    return fmt::format("move sideways: baseline {:.2g} d, needs about {:.2g} d", *baseline, needed);
+  if (inspection.recording->camera_source == CameraSource::guess && found.ok)
     return "the camera is a guess: freeze with Space, then calibrate it from the plane";
-  if (needed > baseline)
-    return fmt::format("move sideways: baseline {:.2g} d, needs about {:.2g} d", baseline, needed);
-  return found.verdict ? found.verdict->reason : why;
+  return why;
 }
 
 }  // namespace gpo
