@@ -20,7 +20,7 @@ unreported=$PWD/tests/sanitizers
 elsewhere='^(EngineAlone\.|Python\.|(Readme|RunScript|Install|Library)$)'
 # Tests that start threads or processes: worker, survey, evaluation, caches, calibration, synthesis, window, live
 # initialization, own methods.
-threads='^(View|Initialize|Engine|ChildProcess|FolderLister)$|RealWindow|Images(Reader|Ahead)|Worker|Survey|Runner|Evaluat|Cache|Calibrat|BoardTruth|Synthes|Renderer|OutputFile|Fetch|WaitingImage|Movie|Monkey|LiveInitializer|BackgroundJob|InTheBackground|CommandMethod'
+threads='^(View|Initialize|Engine|ChildProcess|FolderLister)$|RealWindow|Images(Reader|Ahead)|Worker|Survey|Runner|Evaluat|Cache|Calibrat|BoardTruth|Synthes|Renderer|OutputFile|Fetch|WaitingImage|Movie|Monkey|LiveInitializer|LiveHost|BackgroundJob|InTheBackground|CommandMethod'
 
 export LIBGL_ALWAYS_SOFTWARE=1 GALLIUM_DRIVER=llvmpipe
 # The quarantine must stay below the memory limit of the monkey test. intercept_tls_get_addr=0 avoids invalid reads

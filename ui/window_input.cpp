@@ -70,7 +70,9 @@ void hand_to_imgui(GLFWwindow* window, const InputEvent& event) {
 }
 
 /// Returns whether an open overlay has a text field that takes all keys.
-bool has_field(const WorkbenchState& state) { return state.view.palette || state.view.browse; }
+bool has_field(const WorkbenchState& state) {
+  return state.view.palette || state.view.browse || state.view.sources;
+}
 
 bool popup_is_open() {
   return ImGui::IsPopupOpen("", ImGuiPopupFlags_AnyPopupId | ImGuiPopupFlags_AnyPopupLevel);
@@ -206,7 +208,7 @@ void WindowInput::handle_character(const InputEvent& event,
                                    const WorkbenchState& state,
                                    Commands& commands) {
   if (shortcut_ || listener(state) != Listener::shortcuts) return;
-  const Action* found = action_of_character(event.character);
+  const Action* found = action_of_character(event.character, &state);
   if (found == nullptr || (repeating_ && !found->repeats)) return;
   push(commands, RunAction{found->name});
   if (found->opens_field) queue_.end_frame();

@@ -5,7 +5,6 @@
 #include "engine/base/error.h"
 #include "engine/base/stop.h"
 #include "engine/files/output_file.h"
-#include "engine/window/timestamps.h"
 #include "ui/window_report.h"
 #include "ui/workbench/session/session_file.h"
 
@@ -63,8 +62,10 @@ void draw_overlays(const PanelContext& ui, const Rectangle& window) {
   if (view.show_help) help_overlay(ui, window);
   if (view.palette) palette_overlay(ui, window);
   if (view.browse) browser_overlay(ui, window);
+  if (view.sources) sources_overlay(ui, window);
   if (!view.palette) ui.views.palette = {};
   if (!view.browse) ui.views.browser.open = false;
+  if (!view.sources) ui.views.sources = {};
 }
 
 void draw_panels(PanelContext ui, cv::Size size) {
@@ -77,13 +78,13 @@ void draw_panels(PanelContext ui, cv::Size size) {
                                              .drawer_open = view.panes.drawer != nullptr,
                                              .scan = view.toggles.scan,
                                              .beside_open = view.panes.beside != nullptr,
-                                             .failed = has_failed(ui),
+                                             .failed = ui.state.live || has_failed(ui),
                                              .verdict_height = ui.views.verdict_height,
                                              .settings_height = ui.views.settings_height});
   menu_bar(ui);
   if (!layout.verdict.empty()) verdict_panel(ui, layout.verdict);
   ui.banner = !layout.banner.empty();
-  if (ui.banner) failure_banner(ui, layout.banner);
+  if (ui.banner) (ui.state.live ? live_banner : failure_banner)(ui, layout.banner);
   if (!layout.settings.empty()) settings_panel(ui, layout.settings);
   if (!layout.results.empty()) results_panel(ui, layout.results);
   draw_views(ui, layout);
@@ -157,21 +158,6 @@ void write(const Question& question, float scale) {
   ImGui::Dummy({1, 6 * scale});
   wrapped(Role::text_dim, question.advice);
   ImGui::Dummy({1, 10 * scale});
-}
-
-double movie_rate_hz(const MovieRequest& request, const Recording& recording) {
-  constexpr double kUnknown_hz = 30;
-  if (request.rate_hz > 0) return request.rate_hz;
-  const double recorded = rate_hz(recording.timestamps_ns);
-  return recorded > 0 ? recorded : kUnknown_hz;
-}
-
-cv::Size movie_size(const WorkbenchState& state) {
-  const Recording& recording = *state.document.recording;
-  if (!state.view.panes.compare)
-    return even_size({recording.camera.width, recording.camera.height});
-  return even_size(
-      default_compare_size(static_cast<int>(compared_results(state).size()), recording));
 }
 
 /// Returns "desk-0029.png", or with a number if that exists.
@@ -249,6 +235,20 @@ cv::Mat snapshot_pane(const std::string& view,
   return draw_view(view, size, {.state = state, .timings = false}, kDefaultSize, {gui, views});
 }
 
+cv::Mat snapshot_live(const std::string& view,
+                      const LiveView& live,
+                      const Settings& settings,
+                      std::optional<cv::Size> size) {
+  WorkbenchState state;
+  state.document.settings = settings;
+  show_live(state, live);
+  const cv::Size window = size.value_or(kDefaultSize);
+  const OffscreenContext context(window.width, window.height);
+  Gui gui;
+  Views views;
+  return draw_view(view, size, {.state = state, .timings = false}, kDefaultSize, {gui, views});
+}
+
 std::optional<bool> ask(Gui& gui, cv::Size size, const Question& question) {
   std::vector<std::string_view> texts{question.title, question.advice};
   texts.insert(texts.end(), question.lines.begin(), question.lines.end());
@@ -279,34 +279,19 @@ std::optional<bool> ask(Gui& gui, cv::Size size, const Question& question) {
   return answer;
 }
 
-Movie::Movie(const MovieRequest& request, const WorkbenchState& state)
-    : state_(state),
-      view_(state.view.panes.compare ? "compare" : "picture"),
-      size_(movie_size(state)),
-      first_(state.document.settings.start),
-      frames_(std::min(state.document.settings.frames,
-                       state.frame_count() - state.document.settings.start)),
-      video_(request.file, movie_rate_hz(request, *state.document.recording), size_) {}
-
-void Movie::step(const Draw& draw) {
-  if (finished()) return;
-  state_.view.frame = first_ + done_;
-  video_.add(draw(state_, view_, size_));
-  ++done_;
-  if (finished()) video_.finish();
-}
-
 WorkbenchHost::WorkbenchHost(Gui& gui,
                              Worker::Open open,
                              fs::path example,
                              const std::function<void()>& changed)
-    : gui_(gui),
+    : live(changed),
+      gui_(gui),
       fetcher_(changed),
       lister_(changed),
       models_(changed),
       exports_(changed),
       survey_(changed),
       scan_(changed),
+      recordings_(changed),
       worker_(std::move(open), changed) {
   link.example = std::move(example);
   link.reader = std::make_unique<FileReader>(changed);
@@ -330,7 +315,9 @@ void WorkbenchHost::synchronize() {
     say(state, "Movie canceled. The incomplete file was deleted");
   }
   gpo::synchronize(state, exports_);
-  gpo::synchronize(state, link, worker_, survey_, scan_);
+  gpo::synchronize(state, recordings_);
+  if (!live.synchronize(state, link, worker_))
+    gpo::synchronize(state, link, worker_, survey_, scan_);
   if (const auto copied = std::exchange(state.requests.copied, {}))
     ImGui::SetClipboardText(copied->c_str());
   if (writing()) write_movie();
@@ -341,7 +328,8 @@ void WorkbenchHost::settle() {
   do {
     check_stop();
     synchronize();
-    if (link.busy() || exports_.busy()) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    if (link.busy() || exports_.busy() || recordings_.status().busy)
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
   } while (busy());
   synchronize();
 }

@@ -5,6 +5,8 @@
 #include "engine/recording/images/images.h"
 #include "ui/panels/panels.h"
 #include "ui/workbench/work/export_writer.h"
+#include "ui/workbench/work/live_host.h"
+#include "ui/workbench/work/recording_writer.h"
 
 namespace gpo {
 
@@ -34,6 +36,12 @@ cv::Mat draw_view(const std::string& view,
 cv::Mat snapshot_pane(const std::string& view,
                       const std::shared_ptr<const Inspection>& inspection,
                       int frame,
+                      std::optional<cv::Size> size);
+
+/// The same of a live source, as its window shows it.
+cv::Mat snapshot_live(const std::string& view,
+                      const LiveView& live,
+                      const Settings& settings,
                       std::optional<cv::Size> size);
 
 struct Question {
@@ -81,6 +89,7 @@ class WorkbenchHost {
 
   WorkbenchState state;
   WorkerLink link;
+  LiveHost live;
   bool timings = true;  ///< false: dashes instead of times, to make screenshots comparable
   bool reads_models_at_once = false;    ///< while it draws, instead of in the background
   cv::Size size = cv::Size(1280, 720);  ///< window size [px]
@@ -104,7 +113,10 @@ class WorkbenchHost {
   PanelInput input() const;
   void save(const Screenshot& wanted);
   void write_movie();
-  bool exporting() const { return exports_.busy() || !state.requests.exports.empty(); }
+  bool exporting() const {
+    return exports_.busy() || !state.requests.exports.empty() || recordings_.status().busy ||
+           state.requests.save_recording;
+  }
 
   Gui& gui_;
   std::optional<Movie> movie_;  ///< being written
@@ -116,6 +128,7 @@ class WorkbenchHost {
   ExportWriter exports_;
   Survey survey_;
   Scan scan_;
+  RecordingWriter recordings_;
   Worker worker_;
 };
 

@@ -52,28 +52,12 @@ void check_new_output(const fs::path& output, RecordingFormat format) {
   if (fs::exists(output)) throw InputError(output.string() + ": already exists; choose a new file");
 }
 
-/// Returns the source that the user typed; a file is opened. Throws InputError.
-SourceAddress source_of(const std::string& address) {
-  if (is_live_address(address)) return {address};
-  if (!fs::exists(address))
-    throw InputError(
-        address + ": no such file; expected camera:0, rtsp://, http:// or udp://, or a recording");
-  return {address, open_given(address)};
-}
-
-/// Returns the camera of a source that is a recording; nullopt for all others.
-std::optional<LiveCamera> known_camera(const SourceAddress& address) {
-  const auto& recording = address.recording;
-  if (!recording) return std::nullopt;
-  return LiveCamera{recording->camera, recording->camera_source, "as in " + address.text};
-}
-
 int record_source(const RecordArguments& arguments, Interrupt& interrupt) {
   constexpr int kQueue = 60;
   const fs::path& output = arguments.output;
   const RecordingFormat format = recording_format(output, arguments.format);
   check_new_output(output, format);
-  const SourceAddress address = source_of(arguments.source);
+  const SourceAddress address = live_source(arguments.source);
   FrameSpool spool(output);
   interrupt.let_finish();
   Recorded recorded;
@@ -87,10 +71,11 @@ int record_source(const RecordArguments& arguments, Interrupt& interrupt) {
   }
   const StopScope to_the_end(nullptr);  // Ctrl-C ended the capture, not the writing
   const LiveImages live = spool.images();
-  const Recording recording = live_recording({.address = arguments.source,
-                                              .device = recorded.status.device,
-                                              .camera = known_camera(address)},
-                                             live);
+  const Recording recording =
+      live_recording({.address = arguments.source,
+                      .device = recorded.status.device,
+                      .camera = camera_of_source(address, recorded.status.device, spool.size())},
+                     live);
   {
     ProgressBar bar("writing " + output.string());
     write_recording(recording, std::nullopt, format, output, std::ref(bar));

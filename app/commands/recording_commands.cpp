@@ -13,6 +13,7 @@
 #include "engine/recording/layouts/write_recording.h"
 #include "engine/synthesis/recipe.h"
 #include "engine/synthesis/synthesize.h"
+#include "ui/workbench/work/recording_writer.h"
 
 #include <algorithm>
 #include <cstdio>
@@ -137,10 +138,7 @@ RecordingInfo found_in(const std::shared_ptr<const Recording>& recording) {
 
 RecordingFormat recording_format(const fs::path& output,
                                  const std::optional<RecordingFormat>& wanted) {
-  const std::string extension = output.extension();
-  const RecordingFormat named = extension == ".bag"    ? RecordingFormat::rosbag
-                                : extension == ".mcap" ? RecordingFormat::mcap
-                                                       : RecordingFormat::euroc;
+  const RecordingFormat named = recording_format_of(output);
   const RecordingFormat format = wanted.value_or(named);
   if (format == RecordingFormat::euroc && named != format)
     throw InputError(fmt::format("--format euroc writes a folder, but {} names a {} file",

@@ -112,7 +112,7 @@ struct SnapshotArguments {
   ViewRequest drawn;  ///< without size, window and table
   std::optional<std::string> size;
   fs::path output;
-  std::optional<fs::path> script, baseline;
+  std::optional<fs::path> script, baseline, live;
   int tolerance = 3;
 };
 
@@ -184,6 +184,44 @@ DrawnView draw(const InspectArguments& arguments, ViewRequest request) {
   return drawn;
 }
 
+/// Draws the window of a live source whose images are those of a recording, one by one.
+DrawnView draw_live(const SnapshotArguments& arguments) {
+  const std::string address = arguments.live->string();
+  if (is_live_address(address))
+    throw InputError("--live: '" + address + "', expected a video or a recording");
+  const SourceAddress source = live_source(address);
+  const Recording& recording = *source.recording;
+  if (!recording.images) throw InputError("--live: " + address + " has no images");
+  const int last = recording.frame_count() - 1;
+  const int frame = arguments.drawn.frame.value_or(last);
+  if (frame < 0 || frame > last)
+    throw SettingError(
+        "frame", fmt::format("{} is not in the recording, which has frames 0 to {}", frame, last));
+  LiveWindow window(
+      {.address = address,
+       .device = "",
+       .camera = LiveCamera{recording.camera, recording.camera_source, "as in " + address}});
+  const Settings& settings = arguments.inspect.settings;
+  for (int i = 0; i <= frame; ++i) {
+    check_stop();
+    window.add({recording.images->bgr(i), recording.timestamps_ns[i]}, settings.tracking);
+  }
+  auto answer = inspect(window.task(), settings, current_stop());
+  if (!answer) throw Stopped{};
+  DrawnView drawn;
+  if (answer->inspection)
+    add_result(drawn, answer->inspection, answer->inspection->settings.options.method);
+  const LiveView live{.address = recording.name,
+                      .capture = {.state = CaptureState::running,
+                                  .size = recording.images->bgr(frame).size(),
+                                  .captured = frame + 1},
+                      .answer = std::make_shared<const LiveAnswer>(std::move(*answer)),
+                      .why_anew = window.why_anew()};
+  fmt::print(stderr, "{} \u00b7 {}\n", progress_text(live), counts_text(live));
+  drawn.image = snapshot_live(arguments.drawn.view, live, settings, arguments.drawn.size);
+  return drawn;
+}
+
 fs::path difference_file(const SnapshotArguments& arguments) {
   return fs::path(arguments.output).replace_extension(".diff.png");
 }
@@ -209,7 +247,10 @@ int compare(const cv::Mat& image, const cv::Mat& baseline, const SnapshotArgumen
 }
 
 void check(const SnapshotArguments& arguments) {
-  if (arguments.inspect.recording.empty()) throw InputError("recording is required");
+  if (arguments.live && !arguments.inspect.recording.empty())
+    throw InputError("--live: give no recording besides it");
+  if (arguments.inspect.recording.empty() && !arguments.live)
+    throw InputError("recording is required");
   if (arguments.drawn.view.empty()) throw InputError("--view is required");
   if (arguments.output.empty()) throw InputError("--output is required");
   if (arguments.output.extension() != ".png")
@@ -217,6 +258,7 @@ void check(const SnapshotArguments& arguments) {
                                  arguments.output.string()));
   const std::vector<NamedFile> inputs{{"--baseline", arguments.baseline},
                                       {"--tracks", arguments.inspect.tracks},
+                                      {"--live", arguments.live},
                                       {"recording", arguments.inspect.recording}};
   check_outputs({{"--output", arguments.output}}, inputs);
   if (arguments.baseline)
@@ -237,7 +279,7 @@ int draw_one_view(const SnapshotArguments& arguments, const ViewRequest& request
   check(arguments);
   const cv::Mat baseline = arguments.baseline ? read_baseline(*arguments.baseline) : cv::Mat();
   report_unused_by_view(request);
-  const DrawnView drawn = draw(arguments.inspect, request);
+  const DrawnView drawn = arguments.live ? draw_live(arguments) : draw(arguments.inspect, request);
   make_folder(folder_of(fs::absolute(arguments.output)));
   write_image(arguments.output, drawn.image);
   if (!drawn.ok) return kFailed;
@@ -306,6 +348,12 @@ RunCommand add_snapshot(CLI::App& app) {
   add_tracks_and_recording(command, to->inspect);
   CLI::Option* script = command.add_option(
       "--script", to->script, "File of window commands, one per line, instead of one view");
+  command
+      .add_option("--live",
+                  to->live,
+                  "Video or recording whose images arrive one by one up to --frame, as in `view "
+                  "--live`")
+      ->excludes(script);
   command.add_option("--view", to->drawn.view, "View to draw")
       ->check(CLI::IsMember(pane_names()))
       ->excludes(script);

@@ -27,6 +27,7 @@ constexpr const char* kTitle = "GPO Inspector";
 struct ViewArguments {
   InspectArguments inspect;
   std::optional<fs::path> session, script;
+  std::optional<std::string> live;  ///< a camera, a stream or a recording to be played
 };
 
 struct Session {
@@ -49,6 +50,9 @@ struct Session {
               glfwPostEmptyEvent();
             }) {
     own.log->on_change([] { glfwPostEmptyEvent(); });
+    host.live.hooks.source = live_source;
+    host.live.hooks.camera_of = camera_of_source;
+    host.live.hooks.opened = opened_for_window;
     host.state.methods = own.table;
     host.link.read_methods = session_methods(own, [this](const OwnMethods& added) {
       if (!added.waiting.empty()) ask_for_commands();
@@ -97,6 +101,7 @@ struct Session {
   void update_title() {
     const auto& recording = host.state.document.recording;
     std::string now = recording ? recording->name + " \u2013 " : "";
+    if (host.state.live) now = "live: " + now;
     if (recording && recording->camera_source == CameraSource::guess)
       now += "the camera is a guess \u2013 ";
     if (host.link.loading)
@@ -131,7 +136,13 @@ struct Session {
   /// Runs the next command once the results of the previous one are computed.
   void continue_script() {
     if (script.empty() || host.busy()) return;
-    run_action(host.state, script.front().text);
+    const auto call = match_line(script.front().text);
+    if (call && call->action->opens_device)
+      say(host.state,
+          call->action->name + ": scripts open no cameras and streams; start with `view SOURCE`",
+          Severity::error);
+    else
+      run_action(host.state, script.front().text);
     saver.note_change();
     script.pop_front();
     glfwPostEmptyEvent();
@@ -149,7 +160,8 @@ struct Session {
         saver.note_change();
       }
       host.synchronize();
-      if (std::exchange(opened, host.state.document.recording) != opened) saver.note_change();
+      const bool other = std::exchange(opened, host.state.document.recording) != opened;
+      if (other && !host.state.live) saver.note_change();
       for (std::string& line : own.log->take())
         host.state.messages.lines.push_back({Severity::note, std::move(line)});
       continue_script();
@@ -186,9 +198,10 @@ int open_window(const ViewArguments& arguments, OwnMethods& own, Interrupt& inte
   host.state.files.recent = recent_files();
   host.state.files.has_last_session = fs::exists(last_session_file());
   const bool first_run = !host.state.files.has_last_session && host.state.files.recent.empty();
-  if (first_run && session.script.empty()) host.state.view.tour = 1;
+  if (first_run && session.script.empty() && !arguments.live) host.state.view.tour = 1;
   host.state.document.settings = inspect.settings;
   host.state.requests.open = arguments.session ? arguments.session : path;
+  host.state.requests.live = arguments.live;
   const cv::Size kept = read_saved_window(host.state);
   const float scale = session.gui.scale();
   const cv::Size usual(cvRound(1280 * scale), cvRound(720 * scale));
@@ -216,7 +229,16 @@ RunCommand add_view(CLI::App& app) {
   add_recording(command, to->inspect);
   command.add_option("--session", to->session, "Session to continue, a JSON file");
   command.add_option("--script", to->script, "File of commands to start with, one per line");
+  command.add_option(
+      "--live", to->live, "Video or recording to play in real time, as if from a camera");
   return [to](OwnMethods& own, Interrupt& interrupt) {
+    const std::string named = to->inspect.recording;
+    if (to->live && (!named.empty() || to->session))
+      throw InputError("--live: give no recording and no session besides it");
+    if (is_live_address(named)) {
+      to->live = named;
+      to->inspect.recording.clear();
+    }
     if (const auto session = to->session.value_or(to->inspect.recording); !session.empty())
       own.add_session(session);
     find_method(to->inspect, own.table);

@@ -114,7 +114,15 @@ std::vector<fs::path> make_recordings(const std::vector<fs::path>& recipes) {
 /// Version of the self-calibration. Raise it whenever the same images give another camera.
 constexpr int kAlgorithm = 4;
 
+/// Returns the file of the camera of a live source.
+fs::path cache_file(const std::string& device, cv::Size size) {
+  const std::string key = fmt::format("{} {}x{}", device, size.width, size.height);
+  return user_cache_folder() / "cameras" / fmt::format("live-{:016x}.yaml", fnv1a(key));
+}
+
 fs::path cache_file(const Recording& recording) {
+  if (recording.layout == kLiveLayout)
+    return cache_file(recording.name, {recording.camera.width, recording.camera.height});
   std::string key;
   for (const auto& [part, content] : content_of(recording))
     if (part == "pictures" || part == "time stamps" || part == "gyroscope") key += content;
@@ -158,30 +166,6 @@ void cache_camera(const SelfCalibration& found, Recording& recording) {
 
 std::string failure_of(const SelfCalibration& found) {
   return "calibration from the plane failed: " + found.lens.reason;
-}
-
-/// The opened recording can be replaced by one with the camera estimated from its images.
-Worker::Opened opened_for_window(const std::shared_ptr<const Recording>& recording) {
-  Worker::Opened opened = Worker::with_inspector(recording);
-  opened.calibrate = [recording](const std::stop_token& stop, const Progress& progress) {
-    const SelfCalibration found = calibrate(*recording, progress, stop);
-    if (stop.stop_requested()) return Worker::Opened{};
-    if (!found.lens.ok) throw InputError(failure_of(found));
-    Recording calibrated = *recording;
-    cache_camera(found, calibrated);
-    auto next = opened_for_window(std::make_shared<const Recording>(std::move(calibrated)));
-    next.calibration =
-        std::make_shared<const CalibrationResult>(CalibrationResult{recording, to_text(found)});
-    next.undo_calibration = [recording] {
-      std::error_code none;
-      // An earlier estimate from the same images is in the same file.
-      if (recording->camera_source != CameraSource::self_calibrated)
-        fs::remove(cache_file(*recording), none);
-      return opened_for_window(recording);
-    };
-    return next;
-  };
-  return opened;
 }
 
 /// Sets the cached camera, else estimates one if `calibrates`; if that fails, adds a note.
@@ -266,6 +250,48 @@ std::shared_ptr<const Recording> open_given(const fs::path& path,
   };
   return saying("nothing was opened",
                 [&] { return open_resolved(path, folder, watched, calibrates, searched); });
+}
+
+Worker::Opened opened_for_window(const std::shared_ptr<const Recording>& recording) {
+  Worker::Opened opened = Worker::with_inspector(recording);
+  opened.calibrate = [recording](const std::stop_token& stop, const Progress& progress) {
+    const SelfCalibration found = calibrate(*recording, progress, stop);
+    if (stop.stop_requested()) return Worker::Opened{};
+    if (!found.lens.ok) throw InputError(failure_of(found));
+    Recording calibrated = *recording;
+    cache_camera(found, calibrated);
+    auto next = opened_for_window(std::make_shared<const Recording>(std::move(calibrated)));
+    next.calibration =
+        std::make_shared<const CalibrationResult>(CalibrationResult{recording, to_text(found)});
+    next.undo_calibration = [recording] {
+      std::error_code none;
+      // An earlier estimate from the same images is in the same file.
+      if (recording->camera_source != CameraSource::self_calibrated)
+        fs::remove(cache_file(*recording), none);
+      return opened_for_window(recording);
+    };
+    return next;
+  };
+  return opened;
+}
+
+SourceAddress live_source(const std::string& address) {
+  if (is_live_address(address)) return {address};
+  if (!fs::exists(address))
+    throw InputError(
+        address + ": no such file; expected camera:0, rtsp://, http:// or udp://, or a recording");
+  return {address, open_given(address)};
+}
+
+std::optional<LiveCamera> camera_of_source(const SourceAddress& address,
+                                           const std::string& device,
+                                           cv::Size size) {
+  if (const auto& recording = address.recording)
+    return LiveCamera{recording->camera, recording->camera_source, "as in " + address.text};
+  const fs::path file = cache_file(device.empty() ? address.text : device, size);
+  const auto camera = cached_camera(file);
+  if (!camera) return std::nullopt;
+  return LiveCamera{*camera, CameraSource::self_calibrated, "cached in " + file.string()};
 }
 
 Worker::Open opener_for_window(std::size_t cache_mib, const GivenRecording& given) {

@@ -5,6 +5,7 @@
 #include "engine/calibration/plane/plane_lens.h"
 #include "engine/recording/images/frame_faults.h"
 #include "engine/recording/layouts/open_recording.h"
+#include "engine/recording/live/live_recording.h"
 #include "ui/workbench/work/worker.h"
 
 namespace gpo {
@@ -29,8 +30,21 @@ struct GivenRecording {
   SearchedFrames searched = {};  ///< frames to search for faults
 };
 
-/// Does the same for the window's worker, with a calibration on request; other recordings than the
-/// given one have no options.
+/// Returns the source of live images that the user named; a file is opened. Throws InputError.
+SourceAddress live_source(const std::string& address);
+
+/// Returns the camera of a live source: that of its recording, or the one that was calibrated for
+/// this device and size; nullopt if there is none.
+std::optional<LiveCamera> camera_of_source(const SourceAddress& address,
+                                           const std::string& device,
+                                           cv::Size size);
+
+/// Makes a recording one of the window's, with a calibration on request. The camera of a frozen
+/// live source is cached for its device and size.
+Worker::Opened opened_for_window(const std::shared_ptr<const Recording>& recording);
+
+/// Returns what opens recordings for the window's worker, as `open_given` does, with a calibration
+/// on request; other recordings than the given one have no options.
 Worker::Open opener_for_window(std::size_t cache_mib, const GivenRecording& given);
 
 /// Returns the file of the program that runs commands which draw.

@@ -276,6 +276,16 @@ Inspector::Inspector(std::shared_ptr<const Recording> recording)
   stages_->recording = std::move(recording);
 }
 
+Inspector::Inspector(std::shared_ptr<const Recording> recording,
+                     std::shared_ptr<const Tracks> tracks)
+    : Inspector(std::move(recording)) {
+  const Tracking tracking = tracks->anchored ? Tracking::anchored : Tracking::frame_to_frame;
+  auto& cached = stages_->longest_tracks[static_cast<std::size_t>(tracking)];
+  cached.key = FrameSpan{tracks->start, tracks->frame_count()};
+  cached.value.milliseconds.assign(tracks->raw_px.size(), 0);
+  cached.value.tracks = std::move(tracks);
+}
+
 Inspector::~Inspector() = default;
 
 std::shared_ptr<const Inspection> Inspector::inspect(const Settings& settings,

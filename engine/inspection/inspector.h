@@ -81,6 +81,8 @@ WindowRotations window_rotations(const Recording& recording,
 class Inspector {
  public:
   explicit Inspector(std::shared_ptr<const Recording> recording);
+  /// The same with the tracks that the built-in tracker would find in a window of the recording.
+  Inspector(std::shared_ptr<const Recording> recording, std::shared_ptr<const Tracks> tracks);
   ~Inspector();
   /// Returns a finished inspection; null if stopped (within 50 ms). Throws InputError, e.g. for a
   /// window that does not fit or an unknown method.

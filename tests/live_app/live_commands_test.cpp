@@ -77,5 +77,43 @@ TEST(Record, RefusesWhatItCannotOpenOrWrite) {
   EXPECT_FALSE(fs::exists(folder / "a"));
 }
 
+TEST(LiveSnapshot, DrawsTheSameTwice) {
+  const fs::path folder = fresh_folder();
+  for (const char* name : {"one", "two"})
+    succeeding(
+        "snapshot --live sequences/desk --view image --frame 25 --output {}/{}.png", folder, name);
+  EXPECT_EQ(read_file(folder / "one.png"), read_file(folder / "two.png"));
+  const Outcome outcome =
+      program("snapshot --live sequences/desk --view window --frame 25 --output {}/w.png", folder);
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_THAT(outcome.err, HasSubstr("ready from "));
+  EXPECT_THAT(outcome.err, HasSubstr("640x480 \u00b7 26 images \u00b7 0 dropped"));
+}
+
+TEST(LiveSnapshot, NamesWhatItCannotDraw) {
+  const fs::path folder = fresh_folder();
+  const auto refused = [&](const std::string& arguments, const std::string& message) {
+    expect_refused(program("snapshot --view image --output {}/a.png {}", folder, arguments),
+                   message);
+  };
+  refused("--live camera:0", "--live: 'camera:0', expected a video or a recording");
+  refused("--live nothing.mp4", "nothing.mp4: no such file");
+  refused("--live sequences/desk --frame 900", "frame: 900 is not in the recording");
+  refused("--live sequences/desk sequences/desk", "--live: give no recording besides it");
+}
+
+TEST(LiveView, RefusesTwoSources) {
+  expect_refused(program("view --live sequences/desk sequences/desk"),
+                 "--live: give no recording and no session besides it");
+}
+
+TEST(LiveScript, OpensNoCamera) {
+  const fs::path folder = fresh_folder();
+  write_file(folder / "script.txt", "live camera:63\n");
+  const Outcome outcome = program("snapshot --script {}/script.txt", folder);
+  EXPECT_EQ(outcome.exit_code, 2);
+  EXPECT_THAT(outcome.err, HasSubstr("script.txt:1: live: only a user at the window opens"));
+}
+
 }  // namespace
 }  // namespace gpo::test

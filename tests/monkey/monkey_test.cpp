@@ -40,6 +40,13 @@ class Monkey {
     return all[static_cast<std::size_t>(below(static_cast<int>(std::size(all))))];
   }
 
+  /// Returns a line that opens, freezes or restarts a live source.
+  std::string live_line() {
+    static const std::vector<std::string> lines = {
+        "live udp://127.0.0.1:5000", "live camera:63", "freeze", "compute", "live"};
+    return one_of(lines);
+  }
+
   /// Returns an action's name with arguments that may or may not be valid.
   std::string line() {
     const Action& action = one_of(actions());
@@ -66,6 +73,22 @@ class Monkey {
 
 class MonkeyTest : public DrawingTest, public testing::WithParamInterface<int> {
  protected:
+  /// A stream shows the example at five times its rate. A camera is missing.
+  MonkeyTest() {
+    host_.state.files.asks = true;
+    host_.live.hooks.source = [](const std::string& address) {
+      static const auto desk = open_recording(GPO_SOURCE_DIR "/sequences/desk");
+      return address.starts_with("udp:") ? SourceAddress{"sequences/desk", desk}
+                                         : SourceAddress{address};
+    };
+    LiveClock& clock = host_.live.hooks.clock;
+    clock.now_ns = [now_ns = real_clock().now_ns] { return 5 * now_ns(); };
+    clock.wait_until = [wait_until = real_clock().wait_until](std::int64_t time_ns,
+                                                              const std::stop_token& stop) {
+      wait_until(time_ns / 5, stop);
+    };
+  }
+
   void draw() {
     context_.bind();
     for (const Command& command : host_.draw()) apply(host_.state, command);
@@ -120,7 +143,7 @@ TEST_P(MonkeyTest, SurvivesRandomInput) {
   for (int turn = 0; turn < turns; ++turn) {
     std::string line;
     if (monkey.below(3) > 0) {
-      line = monkey.line();
+      line = monkey.below(12) == 0 ? monkey.live_line() : monkey.line();
       run_action(host_.state, line);
     }
     SCOPED_TRACE(fmt::format("seed {}, turn {}: {}", seed, turn, line));

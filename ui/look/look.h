@@ -149,6 +149,7 @@ struct ViewToggles {
   int uncertainty = 1;    ///< magnification in the scene: 0 (not shown), 1, 10, 100
   int exaggeration = 1;   ///< magnification of the cube's error
   int point_size_px = 5;  ///< in the scene, at scale 1
+  int live_seconds = 20;  ///< length of live images to keep [s]
 
   bool operator==(const ViewToggles&) const = default;
 };
@@ -222,7 +223,10 @@ inline constexpr auto kViewNumbers = std::to_array<ViewNumber>({
      [](int times) { return times > 1 ? std::to_string(times) + "\u00d7" : "off"; }, 1},
     {"point_size_px", "point-size", "Size of points", 0, &ViewToggles::point_size_px,
      "Sets the size of the scene's points [px]", "Colors and sizes", "1..20", {}, 1, 20,
-     [](int size) { return std::to_string(size) + " px"; }, 20, true}});
+     [](int size) { return std::to_string(size) + " px"; }, 20, true},
+    {"live_seconds", "live-seconds", "Seconds of live images", 0, &ViewToggles::live_seconds,
+     "Sets how much of a camera or a stream is kept, from the next source on [s]", "", "1..600", {}, 1, 600,
+     [](int seconds) { return std::to_string(seconds) + " s"; }, 600}});
 // clang-format on
 
 /// Formats with three significant digits, but at most `most` decimals.

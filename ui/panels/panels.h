@@ -158,7 +158,7 @@ struct Views {
   LegendHits legend_hits;                      ///< rows of the image's legend in the last frame
   SceneView scene;
   std::array<std::unique_ptr<SceneView>, 2> orientations;  ///< scenes of an ambiguous window
-  ListEntry palette, browser;
+  ListEntry palette, browser, sources;
   std::array<TrackPatch, 2> patches;        ///< a track in its first and in the current frame
   std::map<std::string, ChartView> charts;  ///< by name, see `chart_item`
   Cached<CurveInputs, CurveFacts> curves;
@@ -201,12 +201,14 @@ using DrawPanel = void(const PanelContext& ui, const Rectangle& place);
 DrawPanel settings_panel, results_panel, image_panel, timeline_panel, status_line, empty_panel;
 /// The verdict with its reason, and ways out of a failure.
 DrawPanel verdict_panel, failure_banner;
+/// State of a live source: what its window lacks to be ready, and how many images were dropped.
+DrawPanel live_banner;
 /// Both answers of an ambiguous window side by side, or one above the other.
 DrawPanel orientations_panel;
 /// One column for each compared configuration, in place of image and side pane.
 DrawPanel compare_panel;
 /// In front of the whole window.
-DrawPanel help_overlay, palette_overlay, browser_overlay;
+DrawPanel help_overlay, palette_overlay, browser_overlay, sources_overlay;
 /// One step of the tour, in a corner of the window.
 DrawPanel tour_card;
 /// Names of the side panes and of the drawers, which open them.

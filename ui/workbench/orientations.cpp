@@ -7,8 +7,8 @@ namespace gpo {
 
 std::vector<Settings> orientation_settings(const WorkbenchState& state) {
   const auto& inspection = state.results.inspection;
-  const bool ambiguous = state.document.recording && inspection && inspection->initialization &&
-                         !inspection->initialization->ok &&
+  const bool ambiguous = state.document.recording && !state.live && inspection &&
+                         inspection->initialization && !inspection->initialization->ok &&
                          inspection->initialization->reason.starts_with(kAmbiguousPlane);
   if (!ambiguous || !(inspection->settings == state.document.settings)) return {};
   std::vector<Settings> both(2, inspection->settings);

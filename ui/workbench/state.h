@@ -5,6 +5,7 @@
 #include "engine/experiment/experiment.h"
 #include "engine/exports/exports.h"
 #include "engine/inspection/inspection.h"
+#include "engine/inspection/live/live_window.h"
 #include "engine/inspection/settings/settings_table.h"
 #include "engine/inspection/studies/extrapolation.h"
 #include "engine/inspection/studies/studies.h"
@@ -179,6 +180,8 @@ struct ViewState {
   std::optional<std::string> palette;  ///< typed text; nullopt: closed
   std::optional<Mask> drawn_mask;      ///< being drawn with the mouse; nullopt: none
   std::optional<Browse> browse;        ///< nullopt: closed
+  /// Cameras to choose from, as they were when the list was opened; nullopt: closed.
+  std::optional<std::vector<CameraDevice>> sources;
 };
 
 /// A calibration of the camera that the user may accept or discard.
@@ -211,8 +214,11 @@ struct Requests {
   bool open_example = false;
   bool calibrate = false;  ///< the camera, from a plane in the images
   bool undo_calibration = false;
-  bool find_start = false;       ///< find a frame to initialize from
-  std::optional<fs::path> open;  ///< a recording or a session
+  bool find_start = false;                 ///< find a frame to initialize from
+  std::optional<fs::path> open;            ///< a recording or a session
+  std::optional<std::string> live;         ///< address of a source that the user named
+  bool freeze = false;                     ///< the live source
+  std::optional<fs::path> save_recording;  ///< folder or bag to write the open recording to
   std::vector<Screenshot> screenshots;
   std::optional<MovieRequest> movie;
   std::vector<PendingExport> exports;
@@ -246,6 +252,8 @@ struct WorkbenchState {
   Hover hover;
   ComputedResults results;
   Requests requests;
+  std::optional<LiveView> live;  ///< the source that is shown; nullopt: none
+  std::string live_source;       ///< address of the last one; empty: none yet
   MessageLog messages;
   SessionFiles files;
 
@@ -337,6 +345,9 @@ std::vector<Settings> wanted_inspections(const WorkbenchState& state);
 inline bool wants_report(const WorkbenchState& state) {
   return std::ranges::count(state.requests.screenshots, kReportView, &Screenshot::view) > 0;
 }
+
+/// Returns whether the open recording was made by freezing a live source.
+bool is_frozen(const WorkbenchState& state);
 
 /// The current result first, then the computed compared ones of the same window. Empty before.
 std::vector<ShownResult> shown_results(const WorkbenchState& state);

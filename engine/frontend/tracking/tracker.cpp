@@ -217,33 +217,75 @@ Eigen::Matrix2Xd detect_corners(const cv::Mat& gray) {
   return raw_px;
 }
 
+struct WindowTracker::State {
+  Camera camera;
+  Tracks tracks;
+  Pyramid last;
+  Anchors anchors;
+};
+
+WindowTracker::WindowTracker(const Camera& camera, Tracking tracking, int start)
+    : state_(std::make_unique<State>()) {
+  state_->camera = camera;
+  state_->tracks.start = start;
+  state_->tracks.anchored = tracking == Tracking::anchored;
+}
+
+WindowTracker::~WindowTracker() = default;
+WindowTracker::WindowTracker(WindowTracker&&) noexcept = default;
+WindowTracker& WindowTracker::operator=(WindowTracker&&) noexcept = default;
+
+void WindowTracker::add(const cv::Mat& gray) {
+  auto& [camera, tracks, last, anchors] = *state_;
+  const bool anchored = tracks.anchored;
+  Pyramid next = anchored ? smoothed_pyramid(gray) : build_pyramid(gray);
+  if (tracks.raw_px.empty()) {
+    tracks = corners_of_reference(gray, tracks.start);
+    tracks.anchored = anchored;
+    if (anchored) anchors = make_anchors(next.front(), tracks.raw_px[0], camera);
+  } else {
+    const double most_px = kMostForwardBackward * patch_unit(camera);
+    const Eigen::Matrix2Xd& before = tracks.raw_px.back();
+    append(anchored ? follow(last, next, before, anchors) : follow(last, next, before, most_px),
+           tracks);
+  }
+  last = std::move(next);
+}
+
+void WindowTracker::drop_every_second() {
+  Tracks& tracks = state_->tracks;
+  Tracks kept = tracks;
+  kept.raw_px.clear();
+  kept.forward_backward_px.clear();
+  std::vector<int> moved(tracks.frame_count());  // the first frame that is kept from here on
+  for (int i = 0; i < tracks.frame_count(); ++i) {
+    const bool stays = i % 2 == 0 || i + 1 == tracks.frame_count();
+    moved[i] = kept.frame_count();
+    if (!stays) continue;
+    kept.raw_px.push_back(std::move(tracks.raw_px[i]));
+    kept.forward_backward_px.push_back(std::move(tracks.forward_backward_px[i]));
+  }
+  for (auto& end : kept.ends)
+    if (end) end->frame = moved[end->frame];
+  tracks = std::move(kept);
+}
+
+const Tracks& WindowTracker::tracks() const { return state_->tracks; }
+
+Tracks WindowTracker::take() { return std::move(state_->tracks); }
+
 std::optional<Tracks> track_window(const GrayImages& gray_at,
                                    const Camera& camera,
                                    const FrameSpan& span,
                                    Tracking tracking,
                                    const TrackingRun& run) {
-  const bool anchored = tracking == Tracking::anchored;
-  const double most_px = kMostForwardBackward * patch_unit(camera);
-  Tracks tracks;
-  Pyramid from;
-  Anchors anchors;
+  WindowTracker tracker(camera, tracking, span.start);
   for (int i = 0; i < span.frames; ++i) {
     if (run.stop.stop_requested()) return std::nullopt;
-    const cv::Mat gray = gray_at(span.start + i);
-    Pyramid to = anchored ? smoothed_pyramid(gray) : build_pyramid(gray);
-    if (i == 0) {
-      tracks = corners_of_reference(gray, span.start);
-      tracks.anchored = anchored;
-      if (anchored) anchors = make_anchors(to.front(), tracks.raw_px[0], camera);
-    } else {
-      const Eigen::Matrix2Xd& before = tracks.raw_px.back();
-      append(anchored ? follow(from, to, before, anchors) : follow(from, to, before, most_px),
-             tracks);
-    }
-    from = std::move(to);
+    tracker.add(gray_at(span.start + i));
     if (run.progress) run.progress(i + 1, span.frames);
   }
-  return tracks;
+  return tracker.take();
 }
 
 }  // namespace gpo

@@ -7,6 +7,7 @@
 #include "engine/geometry/camera.h"
 
 #include <functional>
+#include <memory>
 #include <span>
 #include <stop_token>
 
@@ -111,6 +112,26 @@ using FrameProgress = std::function<void(int done, int of)>;
 struct TrackingRun {
   std::stop_token stop = {};
   FrameProgress progress = {};
+};
+
+/// Detects corners in the first image and tracks them from image to image, see `track_window`.
+class WindowTracker {
+ public:
+  WindowTracker(const Camera& camera, Tracking tracking, int start = 0);
+  ~WindowTracker();
+  WindowTracker(WindowTracker&&) noexcept;
+  WindowTracker& operator=(WindowTracker&&) noexcept;
+
+  /// Adds the next image, CV_8UC1.
+  void add(const cv::Mat& gray);
+  /// Forgets every second frame but the first and the last.
+  void drop_every_second();
+  const Tracks& tracks() const;
+  Tracks take();
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
 };
 
 /// Detects corners in the reference frame and tracks them from frame to frame: by pyramidal KLT,

@@ -81,13 +81,16 @@ void LiveBuffer::add(const LiveImage& image) {
   }
 }
 
-LiveImages LiveBuffer::images() const {
+LiveImages LiveBuffer::images(std::span<const LiveImage> earlier) const {
   LiveImages live;
   std::vector<cv::Mat> images;
-  for (const LiveImage& one : images_) {
+  const auto add = [&](const LiveImage& one) {
     live.timestamps_ns.push_back(one.timestamp_ns);
     images.push_back(one.bgr);
-  }
+  };
+  for (const LiveImage& one : earlier)
+    if (images_.empty() || one.timestamp_ns < images_.front().timestamp_ns) add(one);
+  for (const LiveImage& one : images_) add(one);
   live.images = images_in_memory(std::move(images));
   return live;
 }

@@ -9,6 +9,7 @@
 #include <deque>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -52,7 +53,8 @@ class LiveBuffer {
   /// Drops images that are too old or beyond the memory, but never the new one. An image of another
   /// segment replaces all.
   void add(const LiveImage& image);
-  LiveImages images() const;
+  /// Returns the images, preceded by those of `earlier` that are older than all of them.
+  LiveImages images(std::span<const LiveImage> earlier = {}) const;
   int count() const { return static_cast<int>(images_.size()); }
   std::size_t bytes() const { return bytes_; }
 

@@ -1,10 +1,12 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-// Command palette and file browser: a text field above a list of what matches it.
+// Command palette, file browser and list of cameras: a text field above a list of what matches it.
 #include "ui/panels/panels.h"
 
 #include <algorithm>
 #include <sstream>
+
+#include <fmt/format.h>
 
 namespace gpo {
 namespace {
@@ -15,7 +17,7 @@ struct ListShape {
   float padding;
   bool counts_rest;  ///< shows how many rows are left out
 };
-constexpr ListShape kCommands{12, 8, false}, kFiles{14, 6, true};
+constexpr ListShape kCommands{12, 8, false}, kFiles{14, 6, true}, kModes{14, 8, true};
 
 /// A list in front of the window, in its upper middle.
 class OverlayScope {
@@ -225,6 +227,40 @@ void draw_browser_status(const FolderList& list, const TypedPath& typed, bool sa
   }
 }
 
+/// A size and a rate of a camera.
+struct SourceChoice {
+  std::string address, name, mode;
+};
+
+std::vector<SourceChoice> source_choices(std::span<const CameraDevice> cameras) {
+  std::vector<SourceChoice> choices;
+  for (const CameraDevice& camera : cameras) {
+    const std::string address = fmt::format("camera:{}", camera.number);
+    if (camera.modes.empty()) choices.push_back({address, camera.name, "default size"});
+    for (const CameraMode& mode : camera.modes) {
+      const std::string size = fmt::format("{}x{}", mode.size.width, mode.size.height);
+      const std::string rate = mode.rate_hz > 0 ? fmt::format("{:g}", mode.rate_hz) : "";
+      choices.push_back({fmt::format("{},{}{}{}", address, size, rate.empty() ? "" : ",", rate),
+                         camera.name,
+                         rate.empty() ? size : fmt::format("{}, {} Hz", size, rate)});
+    }
+  }
+  return choices;
+}
+
+void draw_source(const SourceChoice& choice, float width, float scale) {
+  const ImVec2 at = ImGui::GetCursorScreenPos();
+  const auto write = [&](float x, Role role, const std::string& text, float room) {
+    const std::string shown = fitting_text(Font::regular, {text}, room);
+    ImGui::GetWindowDrawList()->AddText(
+        {std::round(at.x + x), at.y + 4 * scale}, imgui_color(role), shown.c_str());
+  };
+  const float gap = 8 * scale;
+  write(gap, Role::text, choice.name, 0.45F * width - gap);
+  write(0.45F * width, Role::text, choice.mode, 0.25F * width - gap);
+  write(0.7F * width, Role::text_dim, choice.address, 0.3F * width - gap);
+}
+
 }  // namespace
 
 void palette_overlay(const PanelContext& ui, const Rectangle& window) {
@@ -280,6 +316,27 @@ void browser_overlay(const PanelContext& ui, const Rectangle& window) {
   if (clicked >= 0 || entered)
     accept_file(ui, entry, exists ? &found[static_cast<std::size_t>(row)] : nullptr);
   draw_browser_status(entry.listed, typed, saves);
+}
+
+void sources_overlay(const PanelContext& ui, const Rectangle& window) {
+  const float s = ui.scale;
+  ListEntry& entry = ui.views.sources;
+  const std::vector<SourceChoice> found = source_choices(*ui.state.view.sources);
+  const OverlayScope overlay("sources", window, 640 * s, s);
+  heading(action_named("live").title.c_str());
+  const bool entered =
+      text_field(entry, "Address of a stream: rtsp://, http:// or udp://, or of a camera");
+  entry.chosen = moved_choice(entry.chosen, 0, static_cast<int>(found.size()));
+  const auto draw_one = [s](const SourceChoice& one, float width) { draw_source(one, width, s); };
+  const int clicked = draw_rows<SourceChoice>(found, entry.chosen, kModes, s, draw_one);
+  const std::string typed = entry.text.data();
+  const int row = clicked >= 0 ? clicked : typed.empty() && entered ? entry.chosen : -1;
+  if (row >= 0 && row < static_cast<int>(found.size()))
+    push(ui.commands, RunAction{"live " + found[static_cast<std::size_t>(row)].address});
+  else if (entered && !typed.empty())
+    push(ui.commands, RunAction{fmt::format("live \"{}\"", typed)});
+  if (found.empty()) ImGui::TextDisabled("Found no camera that this user may open");
+  ImGui::TextDisabled("Up, Down choose a camera \u00b7 Enter opens \u00b7 Esc closes");
 }
 
 }  // namespace gpo

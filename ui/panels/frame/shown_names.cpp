@@ -22,6 +22,8 @@ std::vector<std::string_view> shown_names(const PanelInput& input, const Views& 
   for (const fs::path& recent : files.recent) names.push_back(recent.native());
   for (const Bookmark& bookmark : document.bookmarks) names.push_back(bookmark.note);
   for (const FolderEntry& entry : views.browser.listed.entries) names.push_back(entry.name);
+  if (input.state.view.sources)
+    for (const CameraDevice& camera : *input.state.view.sources) names.push_back(camera.name);
   if (!document.recording) return names;
   names.push_back(document.recording->name);
   names.push_back(document.recording->path.native());

@@ -48,6 +48,7 @@ constexpr std::pair<std::string_view, const char*> kSynonyms[] = {
     {"explain-track", "why rejected outlier reason"},
     {"calibrate", "camera lens focal intrinsics"},
     {"find-start", "scan initialize search"},
+    {"live", "webcam device capture rtsp http udp phone"},
     {"theme dark", "color appearance night"},
     {"theme light", "color appearance day"},
     {"text-size", "font zoom scale dpi"}};
@@ -58,9 +59,11 @@ std::string synonyms_of(std::string_view name) {
   return found == std::end(kSynonyms) ? "" : found->second;
 }
 
-const Action* find_shortcut(auto&& matches) {
-  for (const Action& action : actions())
+const Action* find_shortcut(auto&& matches, const WorkbenchState* state = nullptr) {
+  for (const Action& action : actions()) {
+    if (action.takes_keys && (state == nullptr || !action.takes_keys(*state))) continue;
     if (std::ranges::any_of(action.shortcuts, matches)) return &action;
+  }
   return nullptr;
 }
 
@@ -116,9 +119,10 @@ const Action* action_of_key(int glfw_key, bool shift, bool control) {
   });
 }
 
-const Action* action_of_character(char32_t typed) {
+const Action* action_of_character(char32_t typed, const WorkbenchState* state) {
   const char32_t lower = typed >= U'A' && typed <= U'Z' ? typed - U'A' + U'a' : typed;
-  return find_shortcut([&](const Shortcut& s) { return s.character != 0 && s.character == lower; });
+  return find_shortcut([&](const Shortcut& s) { return s.character != 0 && s.character == lower; },
+                       state);
 }
 
 bool enabled(const Action& action, const WorkbenchState& state) {

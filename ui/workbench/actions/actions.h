@@ -48,9 +48,12 @@ struct Action {
   std::function<std::string(const WorkbenchState&)> value = {};  ///< for the help window
   std::function<bool(const WorkbenchState&)> checked = {};       ///< null: not a switch
   bool needs_recording = true;
-  bool repeats = false;      ///< while its key is held
-  bool held = false;         ///< runs with "on" on key press and with "off" on release
-  bool opens_field = false;  ///< moves the keyboard focus to a text field
+  bool repeats = false;       ///< while its key is held
+  bool held = false;          ///< runs with "on" on key press and with "off" on release
+  bool opens_field = false;   ///< moves the keyboard focus to a text field
+  bool opens_device = false;  ///< may open a camera or the network, so no script runs it
+  /// Its keys are another action's while this is false; null: they are always its own.
+  std::function<bool(const WorkbenchState&)> takes_keys = {};
 
   /// Can be run by its name alone.
   bool complete() const { return arguments.empty() || arguments.front() == '['; }
@@ -68,7 +71,8 @@ const Action& action_named(std::string_view name);
 
 /// The action of a key without Alt or Super; null if it has none.
 const Action* action_of_key(int glfw_key, bool shift, bool control = false);
-const Action* action_of_character(char32_t typed);
+/// The same of a typed character. `state`: null for a workbench in which no action `takes_keys`.
+const Action* action_of_character(char32_t typed, const WorkbenchState* state = nullptr);
 
 bool enabled(const Action& action, const WorkbenchState& state);
 
@@ -172,6 +176,7 @@ inline void apply(WorkbenchState& state, const Command& command) { command(state
 
 // The rows of `actions()`, one function a menu.
 void add_file_actions(std::vector<Action>& table);
+void add_live_actions(std::vector<Action>& table);  ///< a part of the menu File
 void add_edit_actions(std::vector<Action>& table);
 void add_point_actions(std::vector<Action>& table);
 void add_mask_actions(std::vector<Action>& table);   ///< a part of the menu Edit

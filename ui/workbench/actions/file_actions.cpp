@@ -158,6 +158,8 @@ void add_open(const MenuRows& menu) {
 
 /// Saves to the given file, else to the last one; the first time the user is asked.
 void save_session(State& state, const Arguments& arguments) {
+  if (state.document.recording->layout == kLiveLayout)
+    throw InputError("save-session: first save the recording with save-recording and open it");
   fs::path file = arguments.empty() ? state.files.session_file : fs::path(arguments[0]);
   if (file.empty()) file = state.document.recording->name + ".session.json";
   if (arguments.empty() && state.files.session_file.empty() && state.files.asks) {
@@ -288,69 +290,12 @@ void add_main_plane(const MenuRows& menu) {
            choose_main_plane);
 }
 
-void go_on_tour(State& state, const Arguments& arguments) {
-  constexpr int kSteps = 3;
-  int& step = state.view.tour;
-  if (arguments.empty()) {
-    step = (step + 1) % (kSteps + 1);
-  } else if (arguments[0] == "off") {
-    step = 0;
-  } else {
-    const int wanted = arguments.whole_number();
-    if (wanted < 1 || wanted > kSteps)
-      throw InputError(fmt::format("tour: '{}', expected 1 to {} or off", arguments[0], kSteps));
-    step = wanted;
-  }
-}
-
-void add_help_pages(const MenuRows& menu) {
-  struct Row {
-    HelpPage page;
-    const char *name, *title, *tooltip;
-    std::vector<Shortcut> shortcuts = {};
-  };
-  for (const Row& row :
-       {Row{HelpPage::keys,
-            "help",
-            "Keys",
-            "Lists all keys and their current state",
-            {key(GLFW_KEY_F1, "F1"), letter('?')}},
-        Row{HelpPage::glossary, "glossary", "Glossary", "Explains the terms of the window"},
-        Row{HelpPage::manual, "manual", "Manual", "Explains the parts of the window and their use"},
-        Row{HelpPage::about, "about", "About", "Shows the version and how it was built"}}) {
-    const auto is_open = [page = row.page](const State& s) {
-      return s.view.show_help && s.view.help_page == page;
-    };
-    Action& action =
-        menu.plain({row.name, row.title, row.tooltip}, [page = row.page, is_open](State& s) {
-          s.view.show_help = !is_open(s);
-          s.view.help_page = page;
-        });
-    action.shortcuts = row.shortcuts;
-    action.checked = is_open;
-  }
-  menu.add(
-      {"tour", "Take the tour", "Explains the window in three steps; without a number goes on"},
-      "[1|2|3|off]",
-      go_on_tour);
-}
-
-void escape(State& state) {
-  if (state.view.browse) return state.view.browse.reset();
-  if (state.view.palette) return state.view.palette.reset();
-  if (state.view.tour > 0 && !state.view.show_help) {
-    state.view.tour = 0;
-    return;
-  }
-  bool& changed = state.view.show_help ? state.view.show_help : state.requests.cancel;
-  changed = !state.view.show_help;
-}
-
 }  // namespace
 
 void add_file_actions(std::vector<Action>& table) {
   const MenuRows menu{table, "File"};
   add_open(menu.anytime());
+  add_live_actions(table);
   add_sessions(menu);
   add_images(menu);
   add_exports({table, "File", "Export"});
@@ -371,29 +316,6 @@ void add_edit_actions(std::vector<Action>& table) {
   add_selection({table, "Edit", "Select"});
   add_main_plane(menu);
   add_track_actions(table);
-}
-
-void add_help_actions(std::vector<Action>& table) {
-  const MenuRows menu = MenuRows{table, "Help"}.anytime();
-  Action& palette =
-      menu.add({"palette", "All commands", "Finds a command by part of its name and runs it"},
-               "[TEXT ...]",
-               [](State& s, const Arguments& arguments) {
-                 if (s.view.palette && arguments.empty())
-                   s.view.palette.reset();
-                 else
-                   s.view.palette = fmt::format("{}", fmt::join(arguments.words, " "));
-               });
-  palette.shortcuts = {control('P')};
-  palette.checked = [](const State& s) { return s.view.palette.has_value(); };
-  palette.opens_field = true;
-  add_help_pages(menu);
-  menu.plain({"escape",
-              "Cancel or close",
-              "Closes what is open on top, else stops the computation, clears the selection or "
-              "closes the drawer"},
-             escape)
-      .shortcuts = {key(GLFW_KEY_ESCAPE, "Esc")};
 }
 
 }  // namespace gpo

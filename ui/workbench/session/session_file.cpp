@@ -45,6 +45,11 @@ void reset_view(ViewState& view) {
   view.orbit.reset();
 }
 
+/// Returns whether a recording is open that can be opened again; that of a live source cannot.
+bool has_file(const WorkbenchState& state) {
+  return state.document.recording && state.document.recording->layout != kLiveLayout;
+}
+
 constexpr std::size_t kMostRecent = 10;
 
 void write_quietly(const fs::path& file, const std::string& text) {
@@ -188,7 +193,7 @@ fs::path user_state_folder() { return user_folder("XDG_STATE_HOME", ".local/stat
 fs::path last_session_file() { return user_state_folder() / "last-session.json"; }
 
 void save_last_session(const WorkbenchState& state) {
-  if (state.document.recording) write_quietly(last_session_file(), session_text(state));
+  if (has_file(state)) write_quietly(last_session_file(), session_text(state));
 }
 
 void SessionSaver::note_change() {
@@ -201,7 +206,7 @@ void SessionSaver::advance(const WorkbenchState& state, double seconds) {
   *left_s_ -= seconds;
   if (*left_s_ > 0) return;
   left_s_.reset();
-  if (!state.document.recording) return;
+  if (!has_file(state)) return;
   std::string text = session_text(state);
   if (text == saved_) return;
   write_quietly(last_session_file(), text);

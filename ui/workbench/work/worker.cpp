@@ -221,6 +221,11 @@ void Worker::open(const fs::path& path) {
   });
 }
 
+void Worker::show(Opened opened) {
+  const auto lock = job_.lock();
+  open_by([opened = std::move(opened)](const std::stop_token& /*stop*/) { return opened; });
+}
+
 void Worker::calibrate() {
   const auto lock = job_.lock();
   if (!published_.recording || next_opening_ || !calibrate_) return;

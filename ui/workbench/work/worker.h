@@ -123,6 +123,8 @@ class Worker {
 
   /// Opens a recording and publishes it. If that fails, the last one stays.
   void open(const fs::path& path);
+  /// Publishes a recording that was opened otherwise.
+  void show(Opened opened);
   /// Publishes the open recording with a camera estimated from its images, if that is possible.
   void calibrate();
   /// Publishes the open recording as it was before its calibration, if it was calibrated.

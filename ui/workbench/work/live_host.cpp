@@ -1,0 +1,125 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "ui/workbench/work/live_host.h"
+
+#include "engine/base/error.h"
+
+#include <utility>
+
+#include <fmt/format.h>
+
+namespace gpo {
+namespace {
+
+/// Returns whether something was requested that ends the display of live images.
+bool ends_live(WorkbenchState& state) {
+  const bool freezes = std::exchange(state.requests.freeze, false);
+  const bool plays = std::exchange(state.view.playing, false);
+  const bool cancels = std::exchange(state.requests.cancel, false);
+  return freezes || plays || cancels || state.requests.open || state.requests.open_example;
+}
+
+/// Refuses requests that need the images at rest.
+void refuse_while_live(WorkbenchState& state) {
+  const bool calibrates = std::exchange(state.requests.calibrate, false);
+  const bool finds_start = std::exchange(state.requests.find_start, false);
+  if (calibrates || finds_start)
+    say(state, "Freeze the images with Space first", Severity::warning);
+}
+
+}  // namespace
+
+bool LiveHost::synchronize(WorkbenchState& state, WorkerLink& link, Worker& worker) {
+  if (const auto address = std::exchange(state.requests.live, {}))
+    open(state, link, worker, *address);
+  if (!session_) {
+    state.requests.freeze = false;
+    report_frozen(state);
+    return waits_for(worker);
+  }
+  const LiveView view = session_->view();
+  show_live(state, view);
+  if (ends_live(state) || view.capture.is_over()) {
+    freeze(state, link, worker);
+    return waits_for(worker);
+  }
+  if (std::exchange(state.requests.compute, false)) session_->start_anew();
+  refuse_while_live(state);
+  session_->want(state.document.settings);
+  return true;
+}
+
+void LiveHost::open(WorkbenchState& state,
+                    WorkerLink& link,
+                    Worker& worker,
+                    const std::string& address) {
+  constexpr double kGiveUp_s = 60;
+  try {
+    if (!hooks.source)
+      throw InputError(address + ": only a user at the window opens cameras and streams");
+    const SourceAddress source = hooks.source(address);
+    if (source.recording && !source.recording->images)
+      throw InputError(address + ": has no images to play");
+    session_.reset();
+    state.live.reset();
+    worker.cancel();
+    link.worker = link.survey = link.scan = {};
+    link.loading = link.calibrating = link.finding_start = false;
+    frozen_.reset();
+    reported_.reset();
+    LiveSessionOptions options{.camera_of = hooks.camera_of};
+    options.capture.give_up_s = kGiveUp_s;
+    options.capture.clock = hooks.clock;
+    options.window.seconds = state.view.toggles.live_seconds;
+    session_ = std::make_unique<LiveSession>(source, options, changed_);
+    state.view.playing = false;
+    address_ = address;
+  } catch (const InputError& error) {
+    say(state, error.what(), Severity::error);
+  }
+}
+
+/// Makes the last seconds of the live source an ordinary recording.
+void LiveHost::freeze(WorkbenchState& state, WorkerLink& link, Worker& worker) {
+  const auto frozen = session_->freeze();
+  const LiveView last = session_->view();
+  session_.reset();
+  state.live.reset();
+  end_ = last.capture;
+  if (frozen) state.live_source = address_;
+  if (!end_.is_over()) end_.message.clear();
+  if (!frozen) {
+    const bool failed = end_.state == CaptureState::failed;
+    const std::string none = last.address + ": there was no image yet";
+    return say(state,
+               end_.message.empty() ? none : end_.message,
+               failed ? Severity::error : Severity::warning);
+  }
+  Settings settings = state.document.settings;
+  settings.start = frozen->window.start;
+  settings.frames = frozen->window.frames;
+  state.document.settings = fit_window(settings, frozen->recording->frame_count());
+  state.document.earlier[frozen->recording->path] = state.document.settings;
+  frozen_ = reported_ = frozen->recording;
+  link.opening.clear();
+  link.worker = {.busy = true};  // at least until it is published
+  worker.show(hooks.opened(frozen_));
+}
+
+void LiveHost::report_frozen(WorkbenchState& state) {
+  if (!reported_ || state.document.recording != reported_) return;
+  const std::string why = end_.message.empty() ? "" : end_.message + ". ";
+  say(state,
+      fmt::format("{}Frozen: {}. Space continues, save-recording saves the recording",
+                  why,
+                  counted(reported_->frame_count(), "frame")),
+      end_.state == CaptureState::failed ? Severity::error : Severity::note);
+  reported_.reset();
+}
+
+bool LiveHost::waits_for(const Worker& worker) {
+  if (frozen_ && worker.latest().recording == frozen_) frozen_.reset();
+  return frozen_ != nullptr;
+}
+
+}  // namespace gpo

@@ -1,0 +1,52 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "ui/workbench/work/live_session.h"
+#include "ui/workbench/work/worker.h"
+
+#include <functional>
+#include <memory>
+#include <string>
+
+namespace gpo {
+
+/// The program's functions for live sources.
+struct LiveHooks {
+  /// Returns the source of an address that the user typed or chose. Throws InputError. Null: none
+  /// is opened.
+  std::function<SourceAddress(const std::string& address)> source = {};
+  LiveCameraOf camera_of = {};
+  /// Makes a frozen source an open recording.
+  std::function<Worker::Opened(std::shared_ptr<const Recording>)> opened = Worker::with_inspector;
+  LiveClock clock = real_clock();
+};
+
+/// The live source of a window: opens it on request, shows it, and freezes it as a recording.
+class LiveHost {
+ public:
+  /// `changed`: see `LiveSession`.
+  explicit LiveHost(std::function<void()> changed) : changed_(std::move(changed)) {}
+
+  LiveHooks hooks;
+
+  /// Fulfills requests and shows the open source. Returns whether it is shown, or frozen and not
+  /// published yet, so that the worker's recording must not be.
+  bool synchronize(WorkbenchState& state, WorkerLink& link, Worker& worker);
+
+ private:
+  void open(WorkbenchState& state, WorkerLink& link, Worker& worker, const std::string& address);
+  void freeze(WorkbenchState& state, WorkerLink& link, Worker& worker);
+  bool waits_for(const Worker& worker);
+  void report_frozen(WorkbenchState& state);
+
+  std::function<void()> changed_;
+  std::unique_ptr<LiveSession> session_;     ///< null: none is open
+  std::string address_;                      ///< address of that session
+  std::shared_ptr<const Recording> frozen_;  ///< not published by the worker yet; null: none
+  /// The same until it is shown, and why its source ended; empty: the user froze it.
+  std::shared_ptr<const Recording> reported_;
+  CaptureStatus end_;
+};
+
+}  // namespace gpo
