@@ -53,7 +53,10 @@ JobStatus report_status(const WorkbenchState& state) {
   const auto done = std::ranges::count_if(wanted, [&](const Settings& one) {
     return find_surveyed(state.results.surveyed.get(), one) != nullptr;
   });
-  return {true, "report", static_cast<int>(done), static_cast<int>(wanted.size())};
+  return {.busy = true,
+          .stage = "report",
+          .done = static_cast<int>(done),
+          .of = static_cast<int>(wanted.size())};
 }
 
 std::vector<Screenshot> take_screenshots(WorkbenchState& state, const WorkerLink& link) {

@@ -104,7 +104,8 @@ int write_report(const ReportArguments& arguments, const MethodTable& methods) {
   paths.insert(paths.end(), arguments.further.begin(), arguments.further.end());
   for (const fs::path& path : paths) {
     one.recording = path;
-    request.recordings.push_back({path, open(one), one.topics, one.tracks});
+    request.recordings.push_back(
+        {.path = path, .recording = open(one), .topics = one.topics, .tracks = one.tracks});
   }
   const WrittenReport report = make_report(request, current_stop());
   const auto configurations = reported_configurations(request);
