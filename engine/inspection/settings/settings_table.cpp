@@ -203,10 +203,9 @@ void add_inlier_rows(std::vector<Setting>& rows) {
   rows.push_back(row([](auto& s) -> auto& { return s.mask; },
                      {.key = "mask",
                       .title = "Masks",
-                      .help = "Areas of the reference frame, in pixels of the recorded, distorted "
-                              "image: not:X1,Y1,X2,Y2 leaves out the tracks in a rectangle, "
-                              "plane:X1,Y1,X2,Y2,X3,Y3,... finds plane 1 among the tracks in a "
-                              "polygon only; several with / in between",
+                      .help = "Areas of the reference frame in the recorded, distorted image [px]: "
+                              "not:X1,Y1,X2,Y2 leaves out tracks in a rectangle, plane:X1,Y1,X2,"
+                              "Y2,X3,Y3,... finds plane 1 in a polygon only; / between several",
                       .advanced = true,
                       .by_hand = true}));
 }

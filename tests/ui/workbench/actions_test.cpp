@@ -60,7 +60,7 @@ TEST(Panes, TwoDrawersAreOpenSideBySide) {
   EXPECT_NE(panes.drawer, nullptr);
   EXPECT_EQ(test::refusal(state, "view-beside scene"),
             "view-beside: 'scene', expected off or one of curves, table, residuals, timing, track, "
-            "tracks, log");
+            "tracks, camera, log");
   run_line(state, "view no-drawer");
   run_line(state, "view-beside log");
   EXPECT_EQ(panes.drawer, find_pane("log")) << "the only drawer is the first one";

@@ -218,7 +218,7 @@ TEST(WorkbenchPanes, HaveTheKeysOfSessionsAndScripts) {
   EXPECT_THAT(sides, testing::ElementsAre("scene", "normals", "solver", "candidates"));
   EXPECT_EQ(fmt::format("{}", fmt::join(pane_names(), " ")),
             "image picture scene normals solver candidates compare curves table residuals timing "
-            "track tracks log window");
+            "track tracks camera log window");
   EXPECT_EQ(panes().size(), 3 + side_panes().size() + drawers().size());
   EXPECT_EQ(find_pane("picture"), find_pane("image"));
   EXPECT_EQ(find_pane(""), nullptr);

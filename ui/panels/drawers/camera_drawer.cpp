@@ -75,9 +75,6 @@ void draw_grid(const Camera& camera, const Rectangle& place) {
 void draw_calibration(const PanelContext& ui, const CalibrationResult& calibration, float values) {
   const float s = ui.scale;
   heading("CALIBRATION: ACCEPT IT?");
-  draw_rows(calibration_changes(calibration.before->camera, ui.state.document.recording->camera),
-            values);
-  wrapped_text(calibration.report, ImGui::GetCursorPosX() + 420 * s);
   for (const char* name : {"accept-calibration", "undo-calibration"}) {
     const Action& action = action_named(name);
     if (ImGui::Button(action.title.c_str())) push(ui.commands, RunAction{action.name});
@@ -85,6 +82,9 @@ void draw_calibration(const PanelContext& ui, const CalibrationResult& calibrati
     ImGui::SameLine();
   }
   ImGui::NewLine();
+  draw_rows(calibration_changes(calibration.before->camera, ui.state.document.recording->camera),
+            values);
+  wrapped_text(calibration.report, ImGui::GetCursorPosX() + 420 * s);
 }
 
 }  // namespace

@@ -32,6 +32,8 @@ std::string other_value(const Setting& setting, const Settings& base = {}) {
       return "3,17";
     case SettingKind::point_pair:
       return "1,2.5,3,4,17";
+    case SettingKind::masks:
+      return "not:1,2.5,3,4/plane:0,0,40,0,40,20";
   }
   return "";
 }
