@@ -22,6 +22,7 @@
 #include <numeric>
 
 #include <fmt/format.h>
+#include <opencv2/video/tracking.hpp>
 #include <unistd.h>
 
 namespace gpo::bench {
@@ -52,9 +53,16 @@ void detect(State& state, const Recording& recording) {
   state.counters["tracks"] = static_cast<double>(detect_corners(gray).cols());
 }
 
-/// A step from one frame to the next without decoding: gray image, pyramid, tracks.
+std::vector<cv::Mat> gray_images(const Recording& recording) {
+  std::vector<cv::Mat> all;
+  for (int i = 0; i < kTracked; ++i) all.push_back(recording.images->gray(i));
+  return all;
+}
+
+/// A step from one gray image to the next: pyramid, tracks.
 template <Tracking kTracking>
 void track(State& state, const Recording& recording) {
+  const std::vector<cv::Mat> gray = gray_images(recording);
   std::vector<double> ms;
   while (state.KeepRunning()) {
     double begin = 0;
@@ -63,11 +71,41 @@ void track(State& state, const Recording& recording) {
       if (done > 1) ms.push_back(now - begin);
       begin = now;
     };
-    track_window([&](int frame) { return recording.images->gray(frame); },
+    track_window([&](int frame) { return gray[frame]; },
                  recording.camera,
                  {0, kTracked},
                  kTracking,
                  {.progress = step});
+  }
+  if (!ms.empty()) state.counters["ms"] = median(std::move(ms));
+}
+
+/// OpenCV's flow of the same points there and back with its defaults, 21x21 and 3 levels; each
+/// image's pyramid is built once.
+void opencv_flow(State& state, const Recording& recording) {
+  const cv::Size window(21, 21);
+  constexpr int kLevels = 3;
+  const std::vector<cv::Mat> gray = gray_images(recording);
+  const auto tracks = *track_window(
+      [&](int frame) { return gray[frame]; }, recording.camera, {0, kTracked}, Tracking::anchored);
+  std::vector<double> ms;
+  while (state.KeepRunning()) {
+    std::vector<cv::Mat> from, to;
+    for (int i = 0; i < kTracked; ++i) {
+      std::vector<cv::Point2f> points, there, back;
+      for (int j = 0; i > 0 && j < tracks.track_count(); ++j)
+        if (tracks.seen(i - 1, j))
+          points.emplace_back(cv::Point2d(tracks.raw_px[i - 1](0, j), tracks.raw_px[i - 1](1, j)));
+      std::vector<unsigned char> found;
+      const double begin = thread_ms();
+      cv::buildOpticalFlowPyramid(gray[i], to, window, kLevels);
+      if (i > 0) {
+        cv::calcOpticalFlowPyrLK(from, to, points, there, found, cv::noArray(), window, kLevels);
+        cv::calcOpticalFlowPyrLK(to, from, there, back, found, cv::noArray(), window, kLevels);
+        ms.push_back(thread_ms() - begin);
+      }
+      std::swap(from, to);
+    }
   }
   if (!ms.empty()) state.counters["ms"] = median(std::move(ms));
 }
@@ -101,10 +139,13 @@ struct Stage {
   const char* name;
   void (*run)(State& state, const Recording& recording);
 };
+constexpr const char* kAnchored = "step, anchored";
+constexpr const char* kOpenCv = "OpenCV's flow, forward and backward";
 constexpr Stage kFrontEnd[] = {{"decoding an image", decode},
                                {"detection", detect},
                                {"step, frame to frame", track<Tracking::frame_to_frame>},
-                               {"step, anchored", track<Tracking::anchored>},
+                               {kAnchored, track<Tracking::anchored>},
+                               {kOpenCv, opencv_flow},
                                {"undistortion of all tracks", undistort_tracks},
                                {"RANSAC of a pair", ransac}};
 
@@ -252,6 +293,9 @@ void print_stage_tables(const Results& results) {
              whole_number(results.least("detection", "tracks")));
   print_head("stage | time [ms]");
   for (const Stage& stage : kFrontEnd) print_row({stage.name, cell(results.ms(stage.name))});
+
+  fmt::print("\nAn anchored step takes {} times as long as OpenCV's flow.\n",
+             cell(ratio(results.ms(kAnchored), results.ms(kOpenCv))));
 
   fmt::print("\nPlanes of a room, 30 frames, 200 tracks:\n\n");
   print_head("window | planes | extraction [ms] | `gpo_joint` [ms]");

@@ -7,7 +7,6 @@
 #include <optional>
 #include <vector>
 
-#include <Eigen/Cholesky>
 #include <Eigen/Core>
 #include <opencv2/core.hpp>
 
@@ -38,9 +37,9 @@ Eigen::Matrix2Xd coarse_flow(const SmoothedPyramid& from,
 /// Number of template pixels that are summed at a time.
 constexpr int kPatchKernelWidth = 8;
 
-/// Patch template: the whole pixels around a place in a smoothed image, padded
-/// to a multiple of the kernel's width. Padding and pixels outside of the image are zero in all but
-/// the offsets.
+/// Patch template: the whole pixels around a place in a smoothed image, by rows, each padded to a
+/// multiple of the kernel's width. Padding is zero, and so are pixels outside of the image in all
+/// but the offsets.
 struct Patch {
   std::vector<float> dx;          ///< from its middle [px]
   std::vector<float> dy;          ///< [px]
@@ -49,6 +48,8 @@ struct Patch {
   std::vector<float> brightness;  ///< without its mean
   std::vector<float> one;         ///< 1 in the image
   int half = 0;                   ///< largest dx and dy [px]
+  int row = 0;                    ///< pixels of a row with its padding
+  bool is_complete = false;       ///< no pixel is outside of the image
 };
 
 /// Makes a template of the pixels from `-half` to `half` around a pixel.
@@ -72,6 +73,12 @@ struct Warp {
   }
 };
 
+/// Returns the largest distance along x and y of a warped template from the warp's center [px].
+inline Eigen::Vector2d reach_px(const Patch& patch, const Warp& warp) {
+  return patch.half * warp.linear.cwiseAbs().rowwise().sum() +
+         patch.half * patch.half * warp.quadratic.cwiseAbs().rowwise().sum();
+}
+
 /// Returns whether an image contains all pixels of a warped template.
 bool is_inside(const cv::Size& image, const Patch& patch, const Warp& warp);
 
@@ -86,25 +93,42 @@ struct PatchSums {
   float squares = 0;  ///< sum of I^2
 };
 
+enum class MotionModel { shift, affine };
+
 /// Computes the sums in one pass over a template that is inside the smoothed image, with bilinear
 /// interpolation and the widest registers of this processor. (OpenCV's `remap` rounds places to
-/// 1/32 px.)
-PatchSums patch_sums(const cv::Mat& image, const Patch& patch, const Warp& warp);
+/// 1/32 px.) For a shift the products of dx and dy may be missing.
+PatchSums patch_sums(const cv::Mat& image,
+                     const Patch& patch,
+                     const Warp& warp,
+                     MotionModel unknown);
 
-/// The same for a pure shift and a template whose rows are whole multiples of the kernel's width;
-/// without the products of dx and dy.
+/// The same for a pure shift and a template without padding, whose last row and column may be
+/// missing; without the products of dx and dy.
 PatchSums shifted_sums(const cv::Mat& image, const Patch& patch, const Eigen::Vector2d& center);
 
-// The versions that these choose from; the last two only if `has_avx2_fma`
+/// Copies the pixels around `middle` into a template like that of `shifted_sums`, all of them
+/// inside. Returns the sums of products of slopes along x and y, brightness and 1.
+Eigen::Matrix4d take_pixels(const cv::Mat& image, const cv::Point& middle, Patch& patch);
+
+// The versions that these choose from; those for AVX2 only if `has_avx2_fma`
 // (engine/base/processor.h).
-PatchSums patch_sums_baseline(const cv::Mat& image, const Patch& patch, const Warp& warp);
+PatchSums patch_sums_baseline(const cv::Mat& image,
+                              const Patch& patch,
+                              const Warp& warp,
+                              MotionModel unknown);
 PatchSums shifted_sums_baseline(const cv::Mat& image,
                                 const Patch& patch,
                                 const Eigen::Vector2d& center);
-PatchSums patch_sums_avx2_fma(const cv::Mat& image, const Patch& patch, const Warp& warp);
+PatchSums patch_sums_avx2_fma(const cv::Mat& image,
+                              const Patch& patch,
+                              const Warp& warp,
+                              MotionModel unknown);
 PatchSums shifted_sums_avx2_fma(const cv::Mat& image,
                                 const Patch& patch,
                                 const Eigen::Vector2d& center);
+Eigen::Matrix4d take_pixels_baseline(const cv::Mat& image, const cv::Point& middle, Patch& patch);
+Eigen::Matrix4d take_pixels_avx2_fma(const cv::Mat& image, const cv::Point& middle, Patch& patch);
 
 struct SearchOptions {
   double farthest_px = 5;          ///< largest distance from the prediction [px]
@@ -118,15 +142,13 @@ struct SearchOptions {
 struct PatchTemplate {
   Patch patch;
   PatchNormalMatrix normal;
-  Eigen::LDLT<PatchNormalMatrix> affine;  ///< factors of the normal matrix
-  Eigen::LDLT<Eigen::Matrix4d> shift;     ///< factors of its part without the terms of dx and dy
-  Eigen::Vector2d along_edge;             ///< unit vector of the weakest slope
-  double edge;                            ///< see SearchOptions
+  PatchNormalMatrix affine;    ///< inverse of the normal matrix
+  Eigen::Matrix4d shift;       ///< inverse of its part without the terms of dx and dy
+  Eigen::Vector2d along_edge;  ///< unit vector of the weakest slope
+  double edge;                 ///< see SearchOptions
 };
 
 PatchTemplate make_patch_template(Patch patch);
-
-enum class MotionModel { shift, affine };
 
 /// Alignment result, or why there is none; the end's frame is 0.
 struct Found {

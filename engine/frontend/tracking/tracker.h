@@ -22,8 +22,8 @@ using Nodes = Eigen::Matrix<double, 2, 9>;
 /// All places are undistorted.
 struct Neighborhood {
   std::vector<int> neighbors;  ///< the nearest first
-  /// 1, x, y, x^2, x y, y^2 of each from the template's middle, in the reference frame [100 px].
-  Eigen::Matrix<double, 6, Eigen::Dynamic> monomials;
+  /// Each from the template's middle, in the reference frame, padded by zeros [100 px].
+  std::vector<double> dx, dy;
   Nodes nodes_px;  ///< in the reference frame, from the template's middle
 };
 

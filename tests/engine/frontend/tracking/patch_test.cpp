@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <cstdint>
 
+#include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <gtest/gtest.h>
 #include <opencv2/imgproc.hpp>
@@ -70,22 +71,81 @@ void expect_near(const PatchSums& sums, const Vector8d& products, double squares
   EXPECT_NEAR(sums.squares / squares, 1, 1e-5);
 }
 
+/// Compares both versions with slow sums; those of a shift may lack the products of dx and dy.
+void expect_slow_sums(const cv::Mat& smoothed, const Patch& patch, const Warp& warp) {
+  const auto [products, squares] = slow_sums(smoothed, patch, warp);
+  for (const auto version : {patch_sums_baseline, patch_sums_avx2_fma}) {
+    if (version == patch_sums_avx2_fma && !has_avx2_fma()) continue;
+    expect_near(version(smoothed, patch, warp, MotionModel::affine), products, squares);
+    PatchSums of_shift = version(smoothed, patch, warp, MotionModel::shift);
+    of_shift.products.segment<4>(2) = products.segment<4>(2).cast<float>();
+    expect_near(of_shift, products, squares);
+  }
+}
+
 TEST(PatchKernel, MatchesSlowSums) {
   const cv::Mat smoothed = smoothed_texture();
   const Patch patch = make_patch(smoothed, {50, 40}, 10);
-  const auto [products, squares] = slow_sums(smoothed, patch, some_warp());
-  expect_near(patch_sums_baseline(smoothed, patch, some_warp()), products, squares);
-  if (has_avx2_fma())
-    expect_near(patch_sums_avx2_fma(smoothed, patch, some_warp()), products, squares);
+  ASSERT_TRUE(patch.is_complete);
+  ASSERT_EQ(patch.row, 24);
+  ASSERT_EQ(patch.dx.size(), 21U * 24U);
+  expect_slow_sums(smoothed, patch, some_warp());
+}
+
+TEST(PatchKernel, MatchesSlowSumsOfWholePixelsAndOfAnyRotation) {
+  const cv::Mat smoothed = smoothed_texture();
+  const Patch patch = make_patch(smoothed, {50, 40}, 10);
+  expect_slow_sums(smoothed, patch, {{60, 43}});
+  Warp warp{{60.3, 43.9}};
+  for (int deg = -180; deg < 180; deg += 15) {
+    SCOPED_TRACE(deg);
+    warp.linear = 1.3 * Eigen::Rotation2Dd(deg * M_PI / 180).toRotationMatrix();
+    expect_slow_sums(smoothed, patch, warp);
+  }
+}
+
+TEST(PatchKernel, MatchesSlowSumsOfATemplatePartlyOutsideOfItsImage) {
+  const cv::Mat smoothed = smoothed_texture();
+  const Patch patch = make_patch(smoothed, {6, 85}, 10);
+  EXPECT_FALSE(patch.is_complete);
+  expect_slow_sums(smoothed, patch, some_warp());
+}
+
+TEST(PatchKernel, TakesPixelsLikeATemplate) {
+  const cv::Mat smoothed = smoothed_texture();
+  const Patch whole = make_patch(smoothed, {50, 40}, 8);
+  Patch patch{.half = 8, .row = 16};
+  for (auto* values : {&patch.dx, &patch.slope_x, &patch.slope_y, &patch.brightness})
+    values->resize(16 * 16);
+  for (const auto version : {take_pixels_baseline, take_pixels_avx2_fma}) {
+    if (version == take_pixels_avx2_fma && !has_avx2_fma()) continue;
+    const Eigen::Matrix4d normal = version(smoothed, {50, 40}, patch);
+    Eigen::Matrix4d slow = Eigen::Matrix4d::Zero();
+    const float offset = patch.brightness[0] - whole.brightness[0];
+    for (int k = 0; k < 16 * 16; ++k) {
+      const int of_whole = k / 16 * whole.row + k % 16;
+      EXPECT_EQ(patch.slope_x[k], whole.slope_x[of_whole]);
+      EXPECT_EQ(patch.slope_y[k], whole.slope_y[of_whole]);
+      EXPECT_NEAR(patch.brightness[k] - whole.brightness[of_whole], offset, 0.01);
+      const Eigen::Vector4d column(patch.slope_x[k], patch.slope_y[k], patch.brightness[k], 1);
+      slow += column * column.transpose();
+    }
+    EXPECT_NEAR(slow(2, 3), 0, 1);  // without its mean, in 64ths of a gray level
+    const Eigen::Vector4d scale = slow.diagonal().cwiseSqrt();
+    const Eigen::Matrix4d off =
+        scale.cwiseInverse().asDiagonal() * (normal - slow) * scale.cwiseInverse().asDiagonal();
+    EXPECT_LT(off.cwiseAbs().maxCoeff(), 1e-5);
+  }
 }
 
 TEST(PatchKernel, MatchesSlowSumsOfAShift) {
   const cv::Mat smoothed = smoothed_texture();
   Patch patch = make_patch(smoothed, {50, 40}, 8);
-  // Rows of 16: without the last column and row.
+  // Rows of 16: without padding, the last column and row.
   std::vector<std::size_t> inner;
-  for (std::size_t k = 0; k < 17 * 16; ++k)
-    if (k % 17 != 16) inner.push_back(k);
+  for (int row = 0; row < 16; ++row)
+    for (int column = 0; column < 16; ++column) inner.push_back(row * patch.row + column);
+  patch.row = 16;
   for (auto* values :
        {&patch.dx, &patch.dy, &patch.slope_x, &patch.slope_y, &patch.brightness, &patch.one}) {
     for (std::size_t k = 0; k < inner.size(); ++k) (*values)[k] = (*values)[inner[k]];
@@ -112,7 +172,7 @@ TEST(PatchKernel, ReadsOnlyPixelsOfTheImageInTheInsidePart) {
     EXPECT_GT(pixels, 100);
     EXPECT_LT(pixels, 300);
     const auto [products, squares] = slow_sums(smoothed, part, warp);
-    expect_near(patch_sums(smoothed, part, warp), products, squares);
+    expect_near(patch_sums(smoothed, part, warp, MotionModel::affine), products, squares);
   }
 }
 
@@ -249,12 +309,40 @@ TEST(SmoothedImage, HalvesToMeansOfFour) {
   EXPECT_EQ(half.at<std::uint16_t>(1, 2), (24 + 25 + 34 + 35) / 4);
 }
 
+TEST(SmoothedImage, IsTheSameForAnyWidth) {
+  cv::Mat gray(21, 53, CV_8UC1);
+  cv::randu(gray, 0, 256);
+  const cv::Mat smoothed = smooth_image(gray);
+  cv::Mat slow;
+  const cv::Mat weights = (cv::Mat_<double>(3, 1) << 1, 6, 1);
+  cv::sepFilter2D(gray, slow, CV_64F, weights, weights, {-1, -1}, 0, cv::BORDER_REPLICATE);
+  cv::Mat values;
+  smoothed.convertTo(values, CV_64F);
+  EXPECT_EQ(cv::norm(values, slow, cv::NORM_INF), 0);
+  const cv::Mat half = halved(smoothed);
+  ASSERT_EQ(half.size(), cv::Size(26, 10));
+  for (int v = 0; v < half.rows; ++v)
+    for (int u = 0; u < half.cols; ++u)
+      EXPECT_EQ(half.at<std::uint16_t>(v, u),
+                static_cast<int>(cv::sum(smoothed({2 * u, 2 * v, 2, 2}))[0]) / 4);
+}
+
 cv::Mat shifted_image(const cv::Mat& gray, double dx, double dy, double gain) {
   cv::Mat shifted;
   const cv::Mat to = (cv::Mat_<double>(2, 3) << 1, 0, dx, 0, 1, dy);
   cv::warpAffine(gray, shifted, to, gray.size(), cv::INTER_LINEAR, cv::BORDER_REFLECT);
   shifted.convertTo(shifted, -1, gain, 10);
   return shifted;
+}
+
+TEST(CoarseFlow, EstimatesTheMotionAcrossStripes) {
+  cv::Mat gray(240, 320, CV_8UC1);
+  for (int u = 0; u < gray.cols; ++u)
+    gray.col(u) = cv::Scalar(128 + 60 * std::sin(0.08 * u) + 50 * std::sin(0.031 * u));
+  const Eigen::Matrix2Xd flow = coarse_flow(smoothed_pyramid(gray),
+                                            smoothed_pyramid(shifted_image(gray, 5, 0, 1)),
+                                            Eigen::Vector2d(160, 120));
+  EXPECT_NEAR(flow(0, 0), 5, 0.3);  // the other component is not determined
 }
 
 TEST(CoarseFlow, EstimatesLargeMotionsForAnyExposureAndZeroWithoutTexture) {
