@@ -17,6 +17,16 @@ namespace {
 /// Length of a window up to which the reason for its start is shown.
 constexpr int kFramesAfterStart = 20;
 
+/// Shows the first recording of a live source in place of any other.
+void begin_live(WorkbenchState& state, const std::shared_ptr<const Recording>& recording) {
+  Document& document = state.document;
+  if (document.recording) document.earlier[document.recording->path] = document.settings;
+  document.recording.reset();
+  document.settings.start = 0;
+  document.settings.frames = recording->frame_count();
+  apply_recording(state, recording);
+}
+
 }  // namespace
 
 LiveSession::LiveSession(SourceAddress address,
@@ -126,7 +136,7 @@ void show_live(WorkbenchState& state, const LiveView& view) {
   state.live = view;
   if (view.answer && view.answer->task.recording != state.document.recording) {
     const auto& recording = view.answer->task.recording;
-    if (window_before == 0) apply_recording(state, recording);
+    if (window_before == 0) begin_live(state, recording);
     if (view.answer->task.window != window_before) {
       state.selection = {};
       state.hover = {};
