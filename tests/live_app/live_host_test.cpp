@@ -118,6 +118,9 @@ TEST_F(LiveHostTest, ShowsAGrowingWindowAndFreezesIt) {
 TEST_F(LiveHostTest, ContinuesAfterFreezing) {
   open_live();
   show_until(2);
+  run_line(state_, "compute");
+  pump();
+  show_until(5);
   EXPECT_EQ(action_of_character(U' ', &state_)->name, "freeze");
   run_line(state_, "freeze");
   settle();
@@ -128,6 +131,7 @@ TEST_F(LiveHostTest, ContinuesAfterFreezing) {
   show_until(1);
   EXPECT_EQ(opened_, 2);
   EXPECT_EQ(state_.frame_count(), 2);
+  EXPECT_THAT(state_.messages.text, testing::Not(HasSubstr("outside")));
 }
 
 TEST_F(LiveHostTest, ContinuesTheFrozenSourceAfterAnotherFailed) {

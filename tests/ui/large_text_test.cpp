@@ -218,6 +218,16 @@ TEST_F(Texts, EnterInTheBrowserOpensTheFirstFileThatCanBeOpened) {
   EXPECT_THAT(lines, testing::HasSubstr("z.yaml"));
 }
 
+TEST_F(Texts, EnterInTheListOfCamerasOpensTheChosenMode) {
+  const CameraDevice camera{0, "HD Webcam", {{{1280, 720}, 30}, {{640, 480}, 0}}};
+  state_.view.sources = std::vector{camera};
+  draw_times(3);
+  hold_enter(true);
+  const Commands commands = draw();
+  hold_enter(false);
+  EXPECT_EQ(test::line_of(commands), "live camera:0,1280x720,30");
+}
+
 /// Returns the first and last column in which two images differ; (columns, -1) if in none.
 std::pair<int, int> differing_columns(const cv::Mat& a, const cv::Mat& b) {
   std::pair span(a.cols, -1);

@@ -238,6 +238,19 @@ TEST_F(HelpOverlay, FailedWindowHasABannerWithWaysOut) {
       << "another method";
 }
 
+TEST_F(HelpOverlay, LiveWindowHasABannerThatFreezes) {
+  open(made_inspection({.ok = false}));
+  LiveView live{.address = "camera:0"};
+  live.capture = {.state = CaptureState::running, .size = {640, 480}, .captured = 9, .dropped = 2};
+  state_.live = live;
+  draw_times(3);
+  keep("live-banner", context_.read_bgr());
+  const WindowLayout shown = window_layout({.width = kWidth, .height = kHeight, .failed = true});
+  const float y = shown.banner.y + shown.banner.height / 2;
+  EXPECT_EQ(test::line_of(click(shown.banner.right() - 40, y)), "freeze");
+  EXPECT_EQ(test::line_of(click(shown.banner.x + 40, y)), "") << "no ways out of a failure";
+}
+
 TEST_F(HelpOverlay, ClosesOnAClickBesideIt) {
   open(made_inspection());
   state_.view.show_help = true;

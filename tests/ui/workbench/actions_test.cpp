@@ -22,6 +22,7 @@ TEST(Actions, HaveUniqueNamesAndKeysAndTooltips) {
     EXPECT_FALSE(action.title.empty()) << action.name;
     EXPECT_FALSE(action.tooltip.empty()) << action.name;
     ASSERT_TRUE(action.run) << action.name;
+    if (action.takes_keys) continue;  // instead of another action
     for (const Shortcut& shortcut : action.shortcuts)
       EXPECT_TRUE(labels.insert(shortcut.label).second) << shortcut.label;
   }

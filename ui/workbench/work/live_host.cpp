@@ -35,13 +35,13 @@ bool LiveHost::synchronize(WorkbenchState& state, WorkerLink& link, Worker& work
   if (!session_) {
     state.requests.freeze = false;
     report_frozen(state);
-    return waits_for(worker);
+    return waits_for_frozen(state, worker);
   }
   const LiveView view = session_->view();
   show_live(state, view);
   if (ends_live(state) || view.capture.is_over()) {
     freeze(state, link, worker);
-    return waits_for(worker);
+    return waits_for_frozen(state, worker);
   }
   if (std::exchange(state.requests.compute, false)) session_->start_anew();
   refuse_while_live(state);
@@ -95,11 +95,7 @@ void LiveHost::freeze(WorkbenchState& state, WorkerLink& link, Worker& worker) {
                end_.message.empty() ? none : end_.message,
                failed ? Severity::error : Severity::warning);
   }
-  Settings settings = state.document.settings;
-  settings.start = frozen->window.start;
-  settings.frames = frozen->window.frames;
-  state.document.settings = fit_window(settings, frozen->recording->frame_count());
-  state.document.earlier[frozen->recording->path] = state.document.settings;
+  window_ = frozen->window;
   frozen_ = reported_ = frozen->recording;
   link.opening.clear();
   link.worker = {.busy = true};  // at least until it is published
@@ -117,9 +113,11 @@ void LiveHost::report_frozen(WorkbenchState& state) {
   reported_.reset();
 }
 
-bool LiveHost::waits_for(const Worker& worker) {
-  if (frozen_ && worker.latest().recording == frozen_) frozen_.reset();
-  return frozen_ != nullptr;
+bool LiveHost::waits_for_frozen(WorkbenchState& state, const Worker& worker) {
+  if (!frozen_ || worker.latest().recording != frozen_) return frozen_ != nullptr;
+  replace_recording(state, window_);
+  frozen_.reset();
+  return false;
 }
 
 }  // namespace gpo

@@ -37,13 +37,16 @@ class LiveHost {
  private:
   void open(WorkbenchState& state, WorkerLink& link, Worker& worker, const std::string& address);
   void freeze(WorkbenchState& state, WorkerLink& link, Worker& worker);
-  bool waits_for(const Worker& worker);
+  /// Returns whether the worker has not published the frozen recording yet. Once it has, makes room
+  /// for it.
+  bool waits_for_frozen(WorkbenchState& state, const Worker& worker);
   void report_frozen(WorkbenchState& state);
 
   std::function<void()> changed_;
   std::unique_ptr<LiveSession> session_;     ///< null: none is open
   std::string address_;                      ///< address of that session
   std::shared_ptr<const Recording> frozen_;  ///< not published by the worker yet; null: none
+  FrameSpan window_;                         ///< in the frozen recording
   /// The same until it is shown, and why its source ended; empty: the user froze it.
   std::shared_ptr<const Recording> reported_;
   CaptureStatus end_;

@@ -7,6 +7,7 @@
 #include "engine/recording/layouts/write_recording.h"
 #include "ui/workbench/session/session_file.h"
 
+#include <algorithm>
 #include <utility>
 
 #include <fmt/format.h>
@@ -16,6 +17,17 @@ namespace {
 
 /// Length of a window up to which the reason for its start is shown.
 constexpr int kFramesAfterStart = 20;
+
+/// Makes a window of a live source that of the settings, also after `undo`.
+void fit_to_live(Document& document, int frames) {
+  const auto fit = [frames](UndoStep& step) {
+    step.settings.start = 0;
+    step.settings.frames = frames;
+  };
+  fit(document);
+  std::ranges::for_each(document.undo, fit);
+  std::ranges::for_each(document.redo, fit);
+}
 
 }  // namespace
 
@@ -120,25 +132,36 @@ std::optional<LiveWindow::Frozen> LiveSession::freeze() {
   return window_.frozen();
 }
 
+void replace_recording(WorkbenchState& state, const FrameSpan& window) {
+  Document& document = state.document;
+  if (document.recording && document.recording->layout != kLiveLayout)
+    document.earlier[document.recording->path] = document.settings;
+  document.recording.reset();
+  document.settings.start = window.start;
+  document.settings.frames = window.frames;
+}
+
 void show_live(WorkbenchState& state, const LiveView& view) {
   const bool shown = state.live && state.live->answer;
   const int window_before = shown ? state.live->answer->task.window : 0;
   state.live = view;
   if (view.answer && view.answer->task.recording != state.document.recording) {
     const auto& recording = view.answer->task.recording;
-    if (window_before == 0) apply_recording(state, recording);
+    if (window_before == 0) {
+      replace_recording(state, {0, recording->frame_count()});
+      apply_recording(state, recording);
+    }
     if (view.answer->task.window != window_before) {
       state.selection = {};
       state.hover = {};
     }
     state.document.recording = recording;
-    state.document.settings.start = 0;
-    state.document.settings.frames = recording->frame_count();
     state.results.inspection =
         with_cube(view.answer->inspection, state.document.cube_ray, state.document.other_cube_rays);
     state.view.frame = recording->frame_count() - 1;
     state.view.time_span = {};
   }
+  if (view.answer) fit_to_live(state.document, state.frame_count());
 }
 
 std::string progress_text(const LiveView& view) {

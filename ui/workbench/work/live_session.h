@@ -65,6 +65,10 @@ class LiveSession {
   std::jthread tracker_;  ///< last, so that it ends first
 };
 
+/// Closes the open recording, whose settings are kept for the next time, and sets the window of the
+/// one that is shown next.
+void replace_recording(WorkbenchState& state, const FrameSpan& window);
+
 /// Shows a live source: its window is the recording, and its newest image the current frame.
 void show_live(WorkbenchState& state, const LiveView& view);
 
