@@ -3,6 +3,7 @@
 #include "ui/workbench/work/worker.h"
 
 #include "engine/base/error.h"
+#include "engine/experiment/row.h"
 #include "ui/workbench/session/session_file.h"
 
 #include <utility>
