@@ -149,9 +149,8 @@ void report_unwritten(const RunArguments& run) {
   for (const ExportRequest& request : run.exports)
     unwritten.push_back(fmt::format("--export {}", request.format->key));
   if (!unwritten.empty())
-    fmt::print(stderr,
-               "not written, because the initialization failed: {}\n",
-               fmt::join(unwritten, ", "));
+    fmt::print(
+        stderr, "not written, because the initialization failed: {}\n", fmt::join(unwritten, ", "));
 }
 
 int run_once(const RunArguments& run) {

@@ -89,8 +89,10 @@ ExportRequest parse_export(const std::string& text) {
         fmt::format("--export: found '{}', expected a file or a folder instead of -", text));
   for (const ExportFormat& format : export_formats())
     if (text.find(fmt::format(",{}=", format.key)) != std::string::npos)
-      throw InputError(fmt::format(
-          "--export: found '{}', expected one FORMAT=PATH; repeat --export for {}", text, format.key));
+      throw InputError(
+          fmt::format("--export: found '{}', expected one FORMAT=PATH; repeat --export for {}",
+                      text,
+                      format.key));
   return {&export_format(text.substr(0, equal)), path};
 }
 

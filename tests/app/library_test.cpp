@@ -249,10 +249,11 @@ std::string field(const std::string& name, const std::string& field) {
 
 void make_and_unpack() {
   fs::remove_all(folder());
-  const Outcome made =
-      shell("mkdir -p {0}/debs && cd {0}/debs && cpack -D CPACK_DEBIAN_COMPRESSION_TYPE=gzip --config {1}/CPackConfig.cmake -B .",
-            folder(),
-            GPO_BINARY_DIR);
+  const Outcome made = shell(
+      "mkdir -p {0}/debs && cd {0}/debs && cpack -D CPACK_DEBIAN_COMPRESSION_TYPE=gzip --config "
+      "{1}/CPackConfig.cmake -B .",
+      folder(),
+      GPO_BINARY_DIR);
   ASSERT_EQ(made.exit_code, 0) << made.out << made.err;
   for (const char* name : {"gpo-inspector", "libgpo-dev", "python3-gpo"}) {
     const Outcome unpacked = shell("dpkg-deb -x {} {}", deb(name), root());
@@ -303,8 +304,9 @@ void expect_python_module() {
       module,
       root() / "usr/share/gpo-inspector/sequences/desk");
   EXPECT_EQ(imported.out, fmt::format("{} True\n", module / "gpo/__init__.py")) << imported.err;
-  EXPECT_THAT(field("python3-gpo", "Depends"),
-              AllOf(HasSubstr("python3 (>= 3."), HasSubstr("python3 (<< 3."), HasSubstr("libavformat")));
+  EXPECT_THAT(
+      field("python3-gpo", "Depends"),
+      AllOf(HasSubstr("python3 (>= 3."), HasSubstr("python3 (<< 3."), HasSubstr("libavformat")));
 }
 
 TEST(Packages, WorkAfterUnpacking) {

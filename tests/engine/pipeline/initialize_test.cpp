@@ -101,7 +101,9 @@ TEST(Initialize, IsAtMostWeakWithAGuessedCameraAndReportsWhyAWindowFails) {
 TEST(Initialize, SaysThatTheMethodFailedInTheVerdictOnItsWindow) {
   const auto own = std::make_shared<Method>(find_method("pnp"));
   own->key = "lost";
-  own->initialize = [](const Window&, const MethodOptions&, const Watch&) { return failed("lost"); };
+  own->initialize = [](const Window&, const MethodOptions&, const Watch&) {
+    return failed("lost");
+  };
   const auto verdict_of = [&](int frames) {
     const InitializeOptions options{.method = MethodChoice(own)};
     const WindowResult result = initialized(simulate({.frames = frames}), options);
