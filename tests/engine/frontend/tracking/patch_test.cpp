@@ -114,7 +114,9 @@ TEST(PatchKernel, MatchesSlowSumsOfATemplatePartlyOutsideOfItsImage) {
 TEST(PatchKernel, TakesPixelsLikeATemplate) {
   const cv::Mat smoothed = smoothed_texture();
   const Patch whole = make_patch(smoothed, {50, 40}, 8);
-  Patch patch{.half = 8, .row = 16};
+  Patch patch;
+  patch.half = 8;
+  patch.row = 16;
   for (auto* values : {&patch.dx, &patch.slope_x, &patch.slope_y, &patch.brightness})
     values->resize(16 * 16);
   for (const auto version : {take_pixels_baseline, take_pixels_avx2_fma}) {

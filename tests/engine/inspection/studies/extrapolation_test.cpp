@@ -14,11 +14,11 @@ namespace {
 
 using testing::HasSubstr;
 
-constexpr int kFrames = 40, kKnown = 20;
+constexpr int kAllFrames = 40, kKnown = 20;
 
 /// A recording with tracks and true poses, in units of the plane's distance.
 std::shared_ptr<const Recording> simulated_recording(const Simulation& simulation,
-                                                     int frames_of_tracks = kFrames) {
+                                                     int frames_of_tracks = kAllFrames) {
   auto recording = std::make_shared<Recording>();
   recording->name = "simulated";
   recording->camera = Camera{640, 480, 500, 500, 319.5, 239.5, Distortion::none, {}};
@@ -41,7 +41,7 @@ std::shared_ptr<const Inspection> inspected(const std::shared_ptr<const Recordin
 
 Simulation moving(double noise_px) {
   return simulate({.motion = Motion::orbit,
-                   .frames = kFrames,
+                   .frames = kAllFrames,
                    .noise_px = noise_px,
                    .travel = 0.4,
                    .off_plane = 0.1});
@@ -52,7 +52,7 @@ TEST(Extrapolation, HasTheExactPosesOfExactTracks) {
   const auto inspection = inspected(simulated_recording(exact));
   ASSERT_TRUE(inspection->initialization->ok) << inspection->initialization->reason;
   const auto after = extrapolate(inspection, 100);
-  ASSERT_EQ(after->cameras.size(), kFrames - kKnown);
+  ASSERT_EQ(after->cameras.size(), kAllFrames - kKnown);
   EXPECT_EQ(after->end, "the recording ends");
   for (const ExtrapolatedCamera& camera : after->cameras) {
     const Pose& truth = exact.cameras[camera.frame];
@@ -67,7 +67,7 @@ TEST(Extrapolation, HasTheExactPosesOfExactTracks) {
 TEST(Extrapolation, StaysNearTheTruthWithNoiseAndOutliers) {
   const Simulation noisy = moving(0.4);
   const auto after = extrapolate(inspected(simulated_recording(noisy)), 100);
-  ASSERT_EQ(after->cameras.size(), kFrames - kKnown);
+  ASSERT_EQ(after->cameras.size(), kAllFrames - kKnown);
   for (const ExtrapolatedCamera& camera : after->cameras)
     EXPECT_LT((camera.pose.p_wc - noisy.cameras[camera.frame].p_wc).norm(), 0.02) << camera.frame;
 }
