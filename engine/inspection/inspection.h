@@ -5,7 +5,7 @@
 #include "engine/evaluation/evaluation.h"
 #include "engine/inertial/inertial_alignment.h"
 #include "engine/inspection/settings/settings_table.h"
-#include "engine/methods/recording_method.h"
+#include "engine/methods/methods.h"
 
 #include <algorithm>
 

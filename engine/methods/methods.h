@@ -22,6 +22,16 @@ namespace gpo {
 /// How a method combines frames (paper, "Multi-frame Initialization Baselines").
 enum class MethodFamily { aggregation, optimization };
 
+/// Properties of another program's result.
+struct ImportedResult {
+  /// Unit of an estimate; nullopt: its scale is arbitrary.
+  std::optional<double> meters_per_unit = {};
+  std::optional<double> time_offset_s = {};        ///< recording's time - result's time, estimated
+  std::optional<double> time_offset_sigma_s = {};  ///< its standard deviation
+  std::string clock = {};                          ///< source of the reference, for people
+  double applied_time_offset_s = 0;                ///< added to the result's times
+};
+
 /// A row of the table of methods, which the command line, the window and the tests read.
 struct Method {
   std::string key;         ///< on the command line, in files

@@ -22,16 +22,6 @@ struct RecordingFacts {
   std::shared_ptr<const ClockReference> clock = {};  ///< null: the window's rotations serve instead
 };
 
-/// Properties of another program's result.
-struct ImportedResult {
-  std::optional<double> meters_per_unit =
-      {};  ///< unit of an estimate; nullopt: its scale is arbitrary
-  std::optional<double> time_offset_s = {};        ///< recording's time - result's time, estimated
-  std::optional<double> time_offset_sigma_s = {};  ///< its standard deviation
-  std::string clock = {};                          ///< source of the reference, for people
-  double applied_time_offset_s = 0;                ///< added to the result's times
-};
-
 /// Initializes a window of one recording and describes the result.
 using BoundMethod = std::function<Initialization(
     const Window& window, const Sources& sources, ImportedResult& imported)>;
