@@ -11,7 +11,7 @@
 namespace gpo::test {
 namespace {
 
-using testing::HasSubstr;
+using testing::HasSubstr, testing::StartsWith;
 
 std::shared_ptr<const Recording> desk() {
   return open_recording(fs::path(GPO_SOURCE_DIR) / "sequences" / "desk");
@@ -82,7 +82,10 @@ TEST(LiveWindow, SaysWhatIsMissing) {
     image.timestamp_ns += i;
     still.add(image, Tracking::anchored);
   }
-  EXPECT_THAT(inspect(still.task(), {})->missing, HasSubstr("move sideways: baseline "));
+  EXPECT_THAT(inspect(still.task(), {})->missing, HasSubstr("move the camera sideways"));
+  LiveWindow short_path(origin_of(*recording));
+  for (int i = 0; i < 4; ++i) short_path.add(image_of(*recording, i), Tracking::anchored);
+  EXPECT_THAT(inspect(short_path.task(), {})->missing, StartsWith("move sideways: baseline "));
 }
 
 TEST(LiveWindow, StartsAnewWhenTracksAreLost) {

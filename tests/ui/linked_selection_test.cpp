@@ -137,7 +137,7 @@ TEST_F(LinkedSelection, EveryEntryOfAContextMenuIsAnAction) {
     const std::string line = entry.line(state_, any);
     EXPECT_TRUE(line.empty() || match_line(line)) << line;
   }
-  EXPECT_EQ(titles.size(), 14U);
+  EXPECT_EQ(titles.size(), 17U);
 }
 
 TEST_F(LinkedSelection, MenusOfNumbersCopyWithAndWithoutUncertainty) {

@@ -104,16 +104,16 @@ TEST(Initialize, SaysThatTheMethodFailedInTheVerdictOnItsWindow) {
   own->initialize = [](const Window&, const MethodOptions&, const Watch&) {
     return failed("lost");
   };
-  const auto verdict_of = [&](int frames) {
+  const auto verdict_of = [&](double travel) {
     const InitializeOptions options{.method = MethodChoice(own)};
-    const WindowResult result = initialized(simulate({.frames = frames}), options);
+    const WindowResult result = initialized(simulate({.frames = 15, .travel = travel}), options);
     EXPECT_EQ(result.initialization.reason, "lost");
     return result.initialization.verdict.value_or(Verdict{});
   };
-  const Verdict good = verdict_of(15);
+  const Verdict good = verdict_of(0.3);
   EXPECT_EQ(good.readiness, Readiness::weak);
   EXPECT_THAT(good.reason, StartsWith("the method failed, although normal uncertainty"));
-  const Verdict weak = verdict_of(4);
+  const Verdict weak = verdict_of(0.05);
   EXPECT_EQ(weak.readiness, Readiness::weak);
   EXPECT_THAT(weak.reason, StartsWith("the method failed; "));
 }

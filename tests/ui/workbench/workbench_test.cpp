@@ -5,6 +5,8 @@
 #include "ui/workbench/actions/actions.h"
 #include "ui/workbench/session/session_file.h"
 
+#include <map>
+
 #include <gtest/gtest.h>
 
 namespace gpo {
@@ -267,9 +269,14 @@ TEST(Workbench, WithoutARecordingActionsOnlySaySo) {
     run(state, action.name);
     EXPECT_EQ(state.view.frame, 0) << action.name;
     EXPECT_FALSE(state.view.playing) << action.name;
-    const std::string message = action.needs_recording      ? "no recording is open"
-                                : action.name == "continue" ? "no previous session"
-                                                            : "";
+    const std::map<std::string, std::string> messages = {
+        {"continue", "no previous session"},
+        {"freeze", "freeze: no camera or stream is open"},
+        {"live", "live: only a user at the window opens cameras and streams, no script"}};
+    const auto own = messages.find(action.name);
+    const std::string message = action.needs_recording  ? "no recording is open"
+                                : own != messages.end() ? own->second
+                                                        : "";
     EXPECT_EQ(state.messages.text, message) << action.name;
     if (action.value) action.value(state);
   }

@@ -332,10 +332,9 @@ void synchronize(
   if (!open && read) opening = open_read(state, link, worker, std::move(*read));
   link.loading = open_example || opening || (link.loading && link.worker.busy && !opened);
   if (calibrate) worker.calibrate();
-  if (std::exchange(state.requests.undo_calibration, false)) {
-    worker.undo_calibration();
-    link.undoing_calibration = true;
-  }
+  const bool undo = std::exchange(state.requests.undo_calibration, false);
+  if (undo) worker.undo_calibration();
+  link.undoing_calibration = link.undoing_calibration || undo;
   link.calibrating = calibrate || (link.calibrating && link.worker.busy && !opening);
   if (compute) {
     worker.request(state.document.settings);
@@ -355,7 +354,8 @@ void synchronize(
   if (open) link.reading = link.reader->status();
   const bool found = scan_for_starts(state, link, scan);
   // Busy at least until the next call.
-  if (open_example || opening || calibrate || compute || found) link.worker = {.busy = true};
+  if (open_example || opening || calibrate || undo || compute || found)
+    link.worker = {.busy = true};
 }
 
 }  // namespace gpo
