@@ -74,6 +74,47 @@ TEST(LiveWindow, FindsTheFirstReadyLengthAmongSkippedOnes) {
   EXPECT_EQ(inspect(last.task(), {})->task.ready_frames, ready_frames);
 }
 
+TEST(LiveWindow, CountsReadyFramesAlsoAfterLeavingOutFrames) {
+  const auto recording = desk();
+  LiveWindow every(origin_of(*recording), {.most_frames = 12});
+  LiveWindow last(origin_of(*recording), {.most_frames = 12});
+  std::int64_t ready_ns = 0;
+  for (int frame = 0; frame < 30; ++frame) {
+    every.add(image_of(*recording, frame), Tracking::anchored);
+    last.add(image_of(*recording, frame), Tracking::anchored);
+    every.note(inspect(every.task(), {})->task);
+    const LiveTask task = every.task();
+    if (task.ready_frames == 0) continue;
+    const auto& times_ns = task.recording->timestamps_ns;
+    if (ready_ns == 0) ready_ns = times_ns[task.ready_frames - 1];
+    EXPECT_GE(times_ns[task.ready_frames - 1], ready_ns) << frame;
+    EXPECT_LT(times_ns[task.ready_frames - 2], ready_ns) << frame;
+  }
+  const LiveTask task = last.task();
+  const int ready_frames = inspect(task, {})->task.ready_frames;
+  ASSERT_GT(ready_frames, 1);
+  EXPECT_LT(ready_frames, last.frames());
+  Inspector inspector(task.recording, task.tracks);
+  for (int frames = 2; frames <= ready_frames; ++frames) {
+    Settings settings;
+    settings.frames = frames;
+    EXPECT_EQ(ready(*inspector.inspect(settings)), frames == ready_frames) << frames;
+  }
+}
+
+TEST(LiveWindow, TakesAnswersFromBeforeFramesWereLeftOut) {
+  const auto recording = desk();
+  LiveWindow live(origin_of(*recording), {.most_frames = 8});
+  for (int frame = 0; frame < 8; ++frame) live.add(image_of(*recording, frame), Tracking::anchored);
+  const LiveTask early = inspect(live.task(), {})->task;
+  ASSERT_EQ(early.solved, 8);
+  ASSERT_GT(early.ready_frames, 0);
+  live.add(image_of(*recording, 8), Tracking::anchored);
+  live.note(early);
+  EXPECT_EQ(live.task().solved, 4);
+  EXPECT_EQ(live.task().ready_frames, early.ready_frames / 2 + 1);
+}
+
 TEST(LiveWindow, SaysWhatIsMissing) {
   const auto recording = desk();
   LiveWindow still(origin_of(*recording));
@@ -110,7 +151,7 @@ TEST(LiveWindow, StaysBoundedAndKeepsItsReferenceFrame) {
     EXPECT_LE(live.frames(), 8);
   }
   const LiveTask task = live.task();
-  EXPECT_FALSE(task.is_whole);
+  EXPECT_EQ(task.halvings, 8);
   EXPECT_EQ(task.recording->timestamps_ns.front(), recording->timestamps_ns.front());
   EXPECT_EQ(task.recording->timestamps_ns.back(), recording->timestamps_ns[29]);
   EXPECT_EQ(task.tracks->frame_count(), live.frames());

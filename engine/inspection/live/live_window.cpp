@@ -46,6 +46,13 @@ std::optional<double> baseline_of(const Inspection& inspection) {
   return baseline;
 }
 
+/// Counts the remaining frames: frame 0, 2, 4, ... and the last one.
+void leave_out_every_second(LiveTask& task) {
+  ++task.halvings;
+  task.solved = (task.solved + 1) / 2;  // windows that end within the inspected ones
+  if (task.ready_frames > 0) task.ready_frames = task.ready_frames / 2 + 1;  // not shorter in time
+}
+
 }  // namespace
 
 LiveWindow::LiveWindow(LiveOrigin origin, const LiveWindowOptions& options)
@@ -92,11 +99,13 @@ void LiveWindow::drop_every_second() {
   for (std::size_t i = 0; i < images_.size(); ++i)
     if (i % 2 == 0 || i + 1 == images_.size()) kept.push_back(images_[i]);
   images_ = std::move(kept);
-  found_.is_whole = false;
+  leave_out_every_second(found_);
 }
 
-void LiveWindow::note(const LiveTask& task) {
-  if (task.window != found_.window) return;
+void LiveWindow::note(const LiveTask& noted) {
+  if (noted.window != found_.window) return;
+  LiveTask task = noted;
+  while (task.halvings < found_.halvings) leave_out_every_second(task);
   found_.solved = std::max(found_.solved, task.solved);
   if (found_.ready_frames == 0) found_.ready_frames = task.ready_frames;
 }
@@ -130,7 +139,7 @@ std::optional<LiveAnswer> inspect(LiveTask task,
   if (!answer.inspection) return std::nullopt;
   if (is_ready(*answer.inspection) && task.ready_frames == 0) {
     task.ready_frames = frames;
-    for (int shorter = std::max(2, task.solved + 1); task.is_whole && shorter < frames; ++shorter) {
+    for (int shorter = std::max(2, task.solved + 1); shorter < frames; ++shorter) {
       const auto earlier = inspector.inspect(settings_of_live(settings, shorter), stop);
       if (!earlier) return std::nullopt;
       if (!is_ready(*earlier)) continue;

@@ -28,9 +28,9 @@ struct LiveTask {
   std::shared_ptr<const Recording> recording;  ///< the window's frames so far
   std::shared_ptr<const Tracks> tracks;        ///< in all of them
   int window = 0;                              ///< counts the windows of a source
-  int solved = 0;        ///< length of the longest window that was inspected before
-  int ready_frames = 0;  ///< length of the shortest one that was ready; 0: none
-  bool is_whole = true;  ///< no frame was dropped from it
+  int halvings = 0;      ///< how often every second frame was left out
+  int solved = 0;        ///< frames of the longest window that was inspected before
+  int ready_frames = 0;  ///< frames of the shortest one that was ready; 0: none
 };
 
 /// A live window as the views show it. Immutable.
@@ -64,7 +64,7 @@ class LiveWindow {
   int frames() const { return static_cast<int>(images_.size()); }
   const std::string& why_anew() const { return why_anew_; }
   /// Takes over what was found about an earlier state of the same window.
-  void note(const LiveTask& task);
+  void note(const LiveTask& noted);
   /// Returns what to inspect now. There is at least one frame.
   LiveTask task() const;
   /// Returns the last seconds as a recording, preceded by older frames of the window, and the
