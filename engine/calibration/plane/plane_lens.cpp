@@ -37,7 +37,6 @@ constexpr double kRoughest = 1e-2;
 constexpr double kLeastMotionForHeights = 0.1;  // that determines heights [distances]
 constexpr double kMostDesign = 100;             // by which clusters increase the variance, at most
 constexpr double kMostLogFocalSigma = 0.03;     // for log f; larger ones are a failure
-constexpr double kPriorOnly = 0.7;  // share of a prior's sigma, see PlaneLens::prior_only
 constexpr double kLeastTilt_deg = 8;
 constexpr double kLeastMoved = 0.1;
 

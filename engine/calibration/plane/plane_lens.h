@@ -214,6 +214,9 @@ struct PlaneCounts {
 };
 PlaneCounts counts_of(const std::vector<ObservedPlane>& planes);
 
+/// Share of a prior's standard deviation above which the images do not determine a parameter.
+constexpr double kPriorOnly = 0.7;
+
 /// Result of a calibration from planes of unknown structure.
 struct PlaneLens {
   bool ok = false;
@@ -222,7 +225,7 @@ struct PlaneLens {
   Camera camera;       ///< with standard deviations
   LensVector lens = LensVector::Zero();
   LensVector sigma = LensVector::Zero();
-  std::array<bool, kLensUnknowns> prior_only{};  ///< not determined by the images
+  std::array<bool, kLensUnknowns> prior_only{};  ///< see `kPriorOnly`
   double rms_px = 0;                             ///< [raw px]
   int points = 0;
   int views = 0;

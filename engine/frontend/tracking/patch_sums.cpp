@@ -62,6 +62,22 @@ Origin origin_of(const cv::Mat& image, const Patch& patch, const Warp& warp, int
   values += a * (__builtin_convertvector(right, Floats) - values);
 }
 
+/// Interpolates within eight pairs of pixels.
+[[gnu::always_inline]] inline void interpolate(const PixelPairs& pairs,
+                                               const Floats& a,
+                                               Floats& values) {
+  values = __builtin_convertvector((Ints)(pairs & 0xffffU), Floats);
+  values += a * (__builtin_convertvector((Ints)(pairs >> 16U), Floats) - values);
+}
+
+[[gnu::always_inline]] inline PatchSums sums_of(const Floats (&products)[8],
+                                                const Floats& squares) {
+  PatchSums sums;
+  for (int i = 0; i < 8; ++i) sums.products[i] = total(products[i]);
+  sums.squares = total(squares);
+  return sums;
+}
+
 // NOLINTNEXTLINE(readability-function-size): see plane_kernel.cpp
 [[gnu::always_inline]] inline PatchSums accumulate(const cv::Mat& image,
                                                    const Patch& patch,
@@ -97,12 +113,9 @@ Origin origin_of(const cv::Mat& image, const Patch& patch, const Warp& warp, int
         two(p[0]), two(p[1]), two(p[2]), two(p[3]), two(p[4]), two(p[5]), two(p[6]), two(p[7])};
     const Floats a = x - __builtin_convertvector(u, Floats);
     const Floats b = y - __builtin_convertvector(v, Floats);
-    const Floats upper_left = __builtin_convertvector((Ints)(upper & 0xffffU), Floats);
-    const Floats upper_right = __builtin_convertvector((Ints)(upper >> 16U), Floats);
-    const Floats lower_left = __builtin_convertvector((Ints)(lower & 0xffffU), Floats);
-    const Floats lower_right = __builtin_convertvector((Ints)(lower >> 16U), Floats);
-    const Floats top = upper_left + a * (upper_right - upper_left);
-    const Floats bottom = lower_left + a * (lower_right - lower_left);
+    Floats top, bottom;
+    interpolate(upper, a, top);
+    interpolate(lower, a, bottom);
     const Floats I = (top + b * (bottom - top)) * one;
     const Floats gxI = gx * I;
     const Floats gyI = gy * I;
@@ -116,10 +129,7 @@ Origin origin_of(const cv::Mat& image, const Patch& patch, const Warp& warp, int
     sum[7] += I;
     squares += I * I;
   }
-  PatchSums sums;
-  for (int i = 0; i < 8; ++i) sums.products[i] = total(sum[i]);
-  sums.squares = total(squares);
-  return sums;
+  return sums_of(sum, squares);
 }
 
 #ifdef __x86_64__
@@ -204,12 +214,9 @@ GPO_AVX2_FMA PatchSums accumulate_rows(const cv::Mat& image, const Patch& patch,
       const auto lower = (PixelPairs)_mm256_blendv_epi8(rows[1], rows[2], below);
       const Floats a = x - __builtin_convertvector(u, Floats);
       const Floats b = y - __builtin_convertvector(v, Floats);
-      const Floats upper_left = __builtin_convertvector((Ints)(upper & 0xffffU), Floats);
-      const Floats upper_right = __builtin_convertvector((Ints)(upper >> 16U), Floats);
-      const Floats lower_left = __builtin_convertvector((Ints)(lower & 0xffffU), Floats);
-      const Floats lower_right = __builtin_convertvector((Ints)(lower >> 16U), Floats);
-      const Floats top = upper_left + a * (upper_right - upper_left);
-      const Floats bottom = lower_left + a * (lower_right - lower_left);
+      Floats top, bottom;
+      interpolate(upper, a, top);
+      interpolate(lower, a, bottom);
       const auto I = (Floats)((Ints)(top + b * (bottom - top)) & column_mask[c]);
       row_gxI += gx * I;
       row_gyI += gy * I;
@@ -228,10 +235,7 @@ GPO_AVX2_FMA PatchSums accumulate_rows(const cv::Mat& image, const Patch& patch,
       sum[5] += row_gyI * dy;
     }
   }
-  PatchSums sums;
-  for (int i = 0; i < 8; ++i) sums.products[i] = total(sum[i]);
-  sums.squares = total(squares);
-  return sums;
+  return sums_of(sum, squares);
 }
 
 #endif

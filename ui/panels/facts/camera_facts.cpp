@@ -1,6 +1,5 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-// What is known about a recording's camera, sensors, times and truth.
 #include "engine/base/error.h"
 #include "engine/calibration/calibrate.h"
 #include "engine/calibration/plane/plane_lens.h"
@@ -21,14 +20,15 @@ namespace {
 
 using Eigen::Vector2d, Eigen::Vector3d;
 
-/// Share of a prior's standard deviation from which on the images determine nothing, as in
-/// `PlaneLens::prior_only`.
-constexpr double kShareOfPrior = 0.7;
+int digits_of(std::size_t k) { return k < 4 ? 2 : 5; }
+const char* unit_of(std::size_t k) { return k < 4 ? " px" : ""; }
 
-std::string with_sigma(double value, std::optional<double> sigma, int digits) {
-  if (!sigma) return fmt::format("{:.{}f}", value, digits);
-  if (*sigma == 0) return fmt::format("{:.{}f} exact", value, digits);
-  return fmt::format("{:.{}f} \u00b1{:.{}g}", value, digits, *sigma, 2);
+/// Returns the text of parameter `k` of a camera: focal lengths and center in pixels, then coefficients.
+std::string with_sigma(double value, std::optional<double> sigma, std::size_t k) {
+  const char* unit = unit_of(k);
+  if (!sigma || *sigma == 0)
+    return fmt::format("{:.{}f}{}{}", value, digits_of(k), unit, sigma ? " exact" : "");
+  return fmt::format("{:.{}f} \u00b1{:.2g}{}", value, digits_of(k), *sigma, unit);
 }
 
 std::optional<double> sigma_of(const Camera& camera, std::size_t k) {
@@ -92,10 +92,10 @@ ResultGroup camera_group(const Recording& recording) {
   for (std::size_t k = 0; k < values.size(); ++k) {
     const auto sigma = sigma_of(camera, k);
     const bool center = k == 2 || k == 3;
-    const double least = kShareOfPrior * LensPrior{}.sigma[2] * camera.width;
+    const double least = kPriorOnly * LensPrior{}.sigma[2] * camera.width;
     const bool prior_only = by_images && center && sigma && *sigma > least;
     ResultRow row{.label = names[k],
-                  .value = with_sigma(values[k], sigma, k < 4 ? 2 : 5) + (k < 4 ? " px" : ""),
+                  .value = with_sigma(values[k], sigma, k),
                   .tooltip = sigma ? "Value and standard deviation"
                                    : "The calibration states no standard deviation"};
     if (prior_only) {
@@ -234,16 +234,12 @@ std::vector<ResultRow> calibration_changes(const Camera& before, const Camera& a
     const auto found = std::ranges::find(old_names, names[k]);
     const double was =
         found == old_names.end() ? 0 : old[static_cast<std::size_t>(found - old_names.begin())];
-    const int digits = k < 4 ? 2 : 5;
-    const char* unit = k < 4 ? " px" : "";
-    rows.push_back({.label = names[k],
-                    .value = fmt::format("{:.{}f} \u2192 {}{}",
-                                         was,
-                                         digits,
-                                         with_sigma(now[k], sigma_of(after, k), digits),
-                                         unit),
-                    .note = fmt::format("{:+.{}f}", now[k] - was, digits),
-                    .tooltip = "Before and after the calibration, and the change"});
+    rows.push_back(
+        {.label = names[k],
+         .value = fmt::format(
+             "{:.{}f} \u2192 {}", was, digits_of(k), with_sigma(now[k], sigma_of(after, k), k)),
+         .note = fmt::format("{:+.{}f}", now[k] - was, digits_of(k)),
+         .tooltip = "Before and after the calibration, and the change"});
   }
   return rows;
 }

@@ -115,22 +115,29 @@ int draw_rows(std::span<const Item> found,
   return clicked;
 }
 
-void draw_command(const Action& action, float width, float scale) {
-  const ImVec2 at = ImGui::GetCursorScreenPos();
-  const auto write = [&](float x, Role role, const std::string& text, float room) {
+/// Writes the columns of a row, each shortened to its room.
+struct RowWriter {
+  ImVec2 at;
+  float scale;
+
+  void operator()(float x, Role role, const std::string& text, float room) const {
     const std::string shown = fitting_text(Font::regular, {text}, room);
     ImGui::GetWindowDrawList()->AddText(
-        {std::round(x), at.y + 4 * scale}, imgui_color(role), shown.c_str());
-  };
+        {std::round(at.x + x), at.y + 4 * scale}, imgui_color(role), shown.c_str());
+  }
+};
+
+void draw_command(const Action& action, float width, float scale) {
+  const RowWriter write{ImGui::GetCursorScreenPos(), scale};
   const float gap = 8 * scale;
   const float usage_x = 0.45F * width;
   const std::string keys = action.shortcuts.empty() ? "" : action.shortcuts.front().label;
   const float keys_x = width - ImGui::CalcTextSize(keys.c_str()).x - gap;
   const std::string space = action.arguments.empty() ? "" : " ";
   const std::string usage = action.name + space + action.arguments;
-  write(at.x + gap, Role::text, action.title, usage_x - 2 * gap);
-  write(at.x + usage_x, Role::text_dim, usage, keys_x - usage_x - gap);
-  write(at.x + keys_x, Role::accent, keys, width);
+  write(gap, Role::text, action.title, usage_x - 2 * gap);
+  write(usage_x, Role::text_dim, usage, keys_x - usage_x - gap);
+  write(keys_x, Role::accent, keys, width);
 }
 
 /// Runs the text if it is a complete command, else the chosen action, or types it out.
@@ -249,12 +256,7 @@ std::vector<SourceChoice> source_choices(std::span<const CameraDevice> cameras) 
 }
 
 void draw_source(const SourceChoice& choice, float width, float scale) {
-  const ImVec2 at = ImGui::GetCursorScreenPos();
-  const auto write = [&](float x, Role role, const std::string& text, float room) {
-    const std::string shown = fitting_text(Font::regular, {text}, room);
-    ImGui::GetWindowDrawList()->AddText(
-        {std::round(at.x + x), at.y + 4 * scale}, imgui_color(role), shown.c_str());
-  };
+  const RowWriter write{ImGui::GetCursorScreenPos(), scale};
   const float gap = 8 * scale;
   write(gap, Role::text, choice.name, 0.45F * width - gap);
   write(0.45F * width, Role::text, choice.mode, 0.25F * width - gap);

@@ -32,6 +32,8 @@ ResultRow row_of(const Recording& recording, const std::string& label) {
 TEST(CameraFacts, HaveUncertaintiesAndTheFieldOfView) {
   Recording recording = recorded();
   EXPECT_EQ(row_of(recording, "fx").value, "500.00 \u00b11.5 px");
+  recording.camera.sigmas.front() = 0;
+  EXPECT_EQ(row_of(recording, "fx").value, "500.00 px exact");
   EXPECT_EQ(row_of(recording, "Image").value, "640\u00d7480 px");
   recording.camera.distortion = Distortion::none;
   recording.camera.coefficients.clear();
