@@ -17,19 +17,6 @@ void draw_orientation(const PanelContext& ui,
   const float s = ui.scale;
   const std::string key = setting_text(one.settings, "rotations");
   const bool shown = one.inspection && one.inspection->initialization->ok;
-  if (shown) {
-    const Inspection& inspection = *one.inspection;
-    const double side = cube_side(inspection, ui.state.document.cube_side);
-    const OrbitCamera camera = scene_camera(
-        inspection, side, place.width / place.height, ui.state.view.viewpoint, ui.state.view.frame);
-    ViewOptions options = view_options(ui, ui.views);
-    options.show.legend = false;
-    options.colors = nullptr;
-    const FrameView view{inspection, ui.state.view.frame, options};
-    auto& scene = ui.views.orientations[number];
-    if (!scene) scene = std::make_unique<SceneView>();
-    draw_scene_view({*ImGui::GetWindowDrawList(), screen_rect(place)}, view, *scene, camera);
-  }
   std::string text = fmt::format("Orientation {}", number + 1);
   if (shown && one.inspection->initialization->verdict)
     text += ": " + verdict_text(*one.inspection->initialization->verdict);
@@ -46,6 +33,20 @@ void draw_orientation(const PanelContext& ui,
   ImGui::PopID();
   tooltip("Sets the source of rotations to " + key + ". Ctrl+Z to undo");
   ImGui::EndGroup();
+  if (!shown) return;
+  const float top = ImGui::GetItemRectMax().y - place.y;
+  const Rectangle below{place.x, place.y + top, place.width, std::max(1.0F, place.height - top)};
+  const Inspection& inspection = *one.inspection;
+  const double side = cube_side(inspection, ui.state.document.cube_side);
+  const OrbitCamera camera = scene_camera(
+      inspection, side, below.width / below.height, ui.state.view.viewpoint, ui.state.view.frame);
+  ViewOptions options = view_options(ui, ui.views);
+  options.show.legend = false;
+  options.colors = nullptr;
+  const FrameView view{inspection, ui.state.view.frame, options};
+  auto& scene = ui.views.orientations[number];
+  if (!scene) scene = std::make_unique<SceneView>();
+  draw_scene_view({*ImGui::GetWindowDrawList(), screen_rect(below)}, view, *scene, camera);
 }
 
 }  // namespace

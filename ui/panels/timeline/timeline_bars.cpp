@@ -252,6 +252,8 @@ std::vector<RulerTick> ruler_ticks(const TimeAxis& axis,
     const auto ns = timestamps_ns.front() + std::llround((at - kRounding) * 1e9);
     const auto found = std::ranges::lower_bound(timestamps_ns, ns) - timestamps_ns.begin();
     const int frame = std::min(static_cast<int>(found), last);
+    // Several times in a gap have the same next frame, the last one is closest to it.
+    if (!ticks.empty() && ticks.back().frame == frame) ticks.pop_back();
     ticks.push_back({frame, fmt::format("{:.{}f} s \u00b7 {}", at, decimals, frame)});
   }
   return ticks;
@@ -259,6 +261,7 @@ std::vector<RulerTick> ruler_ticks(const TimeAxis& axis,
 
 void draw_ruler(const BarArea& area, std::span<const std::int64_t> timestamps_ns) {
   constexpr double kApart = 110;  // room for a text at scale 1 [px]
+  constexpr float kGap = 6;       // between texts at scale 1 [px]
   const float s = area.scale;
   double end = area.axis.left;
   for (const RulerTick& tick : ruler_ticks(area.axis, timestamps_ns, kApart * s)) {
@@ -269,7 +272,7 @@ void draw_ruler(const BarArea& area, std::span<const std::int64_t> timestamps_ns
     const double width = text_width(Font::small, tick.text);
     if (x + 3 * s < end || x + 3 * s + width > area.axis.right) continue;
     write_text(area.list, Font::small, {x + 3 * s, area.top}, tick.text, color_of(Role::text_dim));
-    end = x + 3 * s + width;
+    end = x + (3 + kGap) * s + width;
   }
 }
 

@@ -56,6 +56,14 @@ TEST(Ruler, HasRoundTimesWithTheirFrames) {
   EXPECT_TRUE(ruler_ticks({100, 1100, 1}, std::vector<std::int64_t>{5}, 110).empty());
 }
 
+TEST(Ruler, LabelsTheFrameAfterAGapOnce) {
+  std::vector<std::int64_t> times;
+  for (int i = 0; i < 60; ++i) times.push_back((i < 3 ? 0 : 2'900'000'010) + i * 33'333'333LL);
+  std::vector<std::string> texts;
+  for (const RulerTick& tick : ruler_ticks({100, 1100, 60}, times, 110)) texts.push_back(tick.text);
+  EXPECT_EQ(texts, (std::vector<std::string>{"0 s \u00b7 0", "3 s \u00b7 3", "4 s \u00b7 33"}));
+}
+
 TEST(TimeSpan, ZoomsAroundTheMouse) {
   TimeSpan span;
   for (int i = 0; i < 20; ++i) span = zoomed(span, 20000, 0.25, 0.8);
