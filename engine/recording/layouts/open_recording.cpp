@@ -58,8 +58,28 @@ std::optional<Found> find_layout(const fs::path& path, const OpenOptions& option
   return std::nullopt;
 }
 
+/// Returns up to three folders with a recording, at most two levels below, as relative paths.
+std::vector<std::string> recordings_below(const fs::path& folder) {
+  constexpr int kMostEntries = 1000;
+  std::vector<std::string> names;
+  std::error_code error, none;
+  int entries = 0;
+  fs::recursive_directory_iterator entry(folder, error);
+  for (; !error && entry != end(entry) && names.size() < 3; entry.increment(error)) {
+    if (++entries > kMostEntries) break;
+    if (!entry->is_directory(none)) continue;
+    const bool found = find_layout(entry->path(), {}).has_value();
+    if (found) names.push_back(entry->path().lexically_relative(folder).string());
+    if (found || entry.depth() == 1) entry.disable_recursion_pending();
+  }
+  std::ranges::sort(names);
+  return names;
+}
+
 Found find_in_folder(const fs::path& folder, const OpenOptions& options) {
   if (const auto found = find_layout(folder, options)) return *found;
+  if (const auto below = recordings_below(folder); !below.empty())
+    refuse(folder, "found no recording, but in {}. Open such a folder", fmt::join(below, ", "));
   std::vector<std::string> expected;
   for (const Layout& layout : layouts()) expected.emplace_back(layout.expected);
   refuse(folder, "found no recording, expected {}", fmt::join(expected, ", "));

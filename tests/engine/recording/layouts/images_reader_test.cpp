@@ -161,6 +161,13 @@ TEST_F(ImagesReader, NamesMissingFiles) {
               HasSubstr("notes.txt: unsupported file, expected a folder, "));
 }
 
+TEST_F(ImagesReader, NamesTheFoldersBelowThatHaveARecording) {
+  for (const std::string name : {"above/set/first/", "above/set/deeper/still/"})
+    for (int i = 0; i < 2; ++i) folder.write(name + std::to_string(i) + ".png", numbered(i));
+  EXPECT_EQ(error_of([&] { open_recording(folder.path() / "above"); }),
+            file("above") + ": found no recording, but in set/first. Open such a folder");
+}
+
 TEST_F(ImagesReader, GuessesTheCameraWithANote) {
   write_images(1);
   EXPECT_EQ(open()->camera_source, CameraSource::file);
