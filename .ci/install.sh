@@ -18,7 +18,6 @@ test_packages=(
   python3-pytest python3-pip python3-venv mypy python3-typeshed  # the Python module
   python3-matplotlib  # engine/examples/planes_of_a_room.py
   groff-base bsdextrautils zsh  # the manual page, completions
-  file dpkg-dev  # the Debian packages
 )
 export_packages=(colmap assimp-utils)  # programs that read our exports; tests/nightly.sh
 nightly_packages=(chromium)  # opens a report; large, its test skips without it

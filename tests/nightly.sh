@@ -86,7 +86,7 @@ exports() {
 nine() {
   install_packages "${build_packages[@]}" "${test_packages[@]}"
   build_ci || return 1
-  GPO_ALL_RECORDINGS=1 ctest --test-dir build/ci --output-on-failure -R 'NineRecordings|NineUncertainties|LiveRecordings|FilesOfPeople|HeldOutHalves'
+  GPO_ALL_RECORDINGS=1 ctest --test-dir build/ci --output-on-failure -R 'NineRecordings|NineUncertainties|RealRooms|LiveRecordings|FilesOfPeople|HeldOutHalves'
 }
 
 hostile() {

@@ -9,7 +9,7 @@ given=${1:+$(realpath "$1")}
 scratch=$(mktemp -d)
 trap 'rm -rf "$scratch"' EXIT
 cd "$scratch"
-install_packages lintian
+install_packages lintian file dpkg-dev
 if [ -n "$given" ]; then
   cp "$given"/*.deb .
 else
@@ -28,6 +28,11 @@ gpo-inspector snapshot "$desk" --view image --output image.png
 gpo-inspector snapshot "$desk" --view window --output window.png
 test -s image.png && test -s window.png
 gunzip -c /usr/share/man/man1/gpo-inspector.1.gz | head -n 1
+for file in applications/gpo-inspector.desktop icons/hicolor/scalable/apps/gpo-inspector.svg mime/packages/gpo-inspector.xml \
+  bash-completion/completions/gpo-inspector zsh/vendor-completions/_gpo-inspector; do
+  test -e "/usr/share/$file" || { echo "missing: $file"; exit 1; }
+done
+! dpkg-deb -f gpo-inspector_*.deb Depends | grep -e '-dev' || { echo "the program needs no headers"; exit 1; }
 
 echo "== C++"
 install_packages g++ cmake ninja-build

@@ -3,8 +3,6 @@
 // Files that people bring, with exact truth; see ../shared/data/cases/README.md.
 #include "tests/app/program.h"
 
-#include <cstdlib>
-
 #include <gmock/gmock.h>
 
 namespace gpo::test {
@@ -57,7 +55,7 @@ std::vector<std::string> converted_cases() {
   std::vector<std::string> names = {"phone-video-kinds/hevc10-hlg-rotated-mov",
                                     "dataset-layouts/7scenes/seq-01",
                                     "realsense-two-imu-topics"};
-  if (std::getenv("GPO_ALL_RECORDINGS") == nullptr) return names;
+  if (!all_recordings()) return names;
   for (const char* name : {"phone-video-kinds/av1-mp4",
                            "phone-video-kinds/vp9-webm",
                            "phone-video-kinds/h264-m4v",

@@ -167,9 +167,11 @@ fs::path copy_of_desk(const fs::path& copy, std::initializer_list<const char*> w
   return copy;
 }
 
+bool all_recordings() { return std::getenv("GPO_ALL_RECORDINGS") != nullptr; }
+
 std::vector<std::string> rendered_recordings() {
-  const bool all = std::getenv("GPO_ALL_RECORDINGS") != nullptr;
-  return split(all ? "sideways orbit approach diagonal up-down wander fast-arc low-parallax "
+  return split(all_recordings()
+                   ? "sideways orbit approach diagonal up-down wander fast-arc low-parallax "
                      "rotation-dominant"
                    : "orbit wander rotation-dominant",
                ' ');

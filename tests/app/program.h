@@ -116,8 +116,11 @@ inline fs::path shared(const std::string& name) { return fs::path(GPO_SHARED_DIR
   if (shell(DEBIANS_PYTHON "-c 'import " modules "'").exit_code != 0) \
   GTEST_SKIP() << "Debian's Python has not all of " modules " on this machine"
 
+/// Returns whether GPO_ALL_RECORDINGS is set, as in tests/nightly.sh.
+bool all_recordings();
+
 /// Names of the recipes in sequences/ that tests initialize: easy motion, a rolling shutter, and
-/// one to be refused; all nine if GPO_ALL_RECORDINGS is set, as in tests/nightly.sh.
+/// one to be refused, or all nine.
 std::vector<std::string> rendered_recordings();
 
 }  // namespace gpo::test
