@@ -17,8 +17,7 @@ double movie_rate_hz(const MovieRequest& request, const Recording& recording) {
 
 cv::Size movie_size(const WorkbenchState& state) {
   const Recording& recording = *state.document.recording;
-  if (!state.view.panes.compare)
-    return even_size({recording.camera.width, recording.camera.height});
+  if (!state.view.panes.compare) return even_size(shown_size(recording));
   return even_size(
       default_compare_size(static_cast<int>(compared_results(state).size()), recording));
 }

@@ -76,8 +76,7 @@ void write_window_report(const WorkbenchState& state, const fs::path& file, cons
   WorkbenchState shown = state;
   for (const int frame : report_frames(*inspection)) {
     shown.view.frame = frame;
-    section.frames.push_back(
-        {frame, draw(shown, "picture", {recording.camera.width, recording.camera.height})});
+    section.frames.push_back({frame, draw(shown, "picture", shown_size(recording))});
   }
   shown.view.frame = inspection->window->start;
   shown.view.theme = Theme::light;

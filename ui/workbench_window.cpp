@@ -124,8 +124,7 @@ const Pane& pane_named(const std::string& name) {
 cv::Size default_size(const Pane& pane, const PanelInput& input, cv::Size window) {
   if (pane.kind == PaneKind::window) return window;
   if (!input.state.document.recording) throw InputError("no recording is open");
-  const Camera& camera = input.state.document.recording->camera;
-  if (pane.kind == PaneKind::image) return {camera.width, camera.height};
+  if (pane.kind == PaneKind::image) return shown_size(*input.state.document.recording);
   const bool below = pane.kind == PaneKind::drawer;
   const Rectangle whole = rectangle_of(window);
   const WindowLayout layout = window_layout(

@@ -67,6 +67,8 @@ struct Recording {
   std::shared_ptr<const FrameCache> images;  ///< null if there are only tracks
   /// Files of the images: a video, a bag, or one for each frame; empty if none.
   std::vector<fs::path> image_files;
+  /// Clockwise, from the images to how people see them: the orientation in the first image's EXIF.
+  int quarter_turns = 0;
   std::optional<Gyroscope> gyroscope;
   std::optional<GroundTruth> truth;  ///< from a file; truth from a board is computed on demand
   std::optional<Plane> plane;        ///< true plane in the truth's world

@@ -3,6 +3,7 @@
 // Recordings that people brought: photos with EXIF, boards, gaps and wrong clocks of an IMU.
 #include "engine/files/output_file.h"
 #include "engine/recording/companions/companion_files.h"
+#include "engine/recording/images/images.h"
 #include "tests/app/program.h"
 
 #include <cmath>
@@ -36,6 +37,22 @@ TEST(SensorCases, PhotosCalibrateAlikeWhateverTheirOrientationInExif) {
     EXPECT_NEAR(camera.fx, first->fx, 1e-3) << name;
     EXPECT_NEAR(camera.cy, first->cy, 1e-3) << name;
   }
+}
+
+TEST(SensorCases, PhotosAreShownAsExifTurnsThem) {
+  const fs::path folder = fresh_folder(), turned = case_folder("exif-turned-photos/upside-down");
+  SKIP_WITHOUT(turned);
+  write_file(folder / "script", "legend off\ntracks off\nscreenshot shown.png picture\n");
+  for (const fs::path& photos : {case_folder("visp-chessboard"), turned}) {
+    const fs::path place = folder / photos.filename();
+    fs::create_directories(place);
+    const Outcome drawn =
+        shell("cd {} && {} snapshot {} --frames 2 --script ../script", place, GPO_PROGRAM, photos);
+    EXPECT_EQ(drawn.exit_code, 0) << drawn.err;
+  }
+  cv::Mat expected;
+  cv::rotate(read_image(folder / "visp-chessboard/shown.png"), expected, cv::ROTATE_180);
+  EXPECT_LT(cv::norm(read_image(folder / "upside-down/shown.png"), expected, cv::NORM_INF), 1);
 }
 
 TEST(SensorCases, ARepeatedFrameLateInALongRecordingIsLeftOutByTheWindowAndByRun) {

@@ -16,10 +16,19 @@ namespace {
 constexpr double kLargestImageZoom = 64;
 constexpr double kDiscMargin = 1.13;  // share of the radius that disc and labels take
 
-Vector2d size_of(const Camera& camera) { return Vector2d(camera.width, camera.height); }
+Vector2d turned_size(const Vector2d& size, int quarter_turns) {
+  return quarter_turns % 2 == 0 ? size : size.reverse().eval();
+}
 
-double fitting_scale(const Camera& camera, const ScreenRect& rect) {
-  return std::max(rect.size.cwiseQuotient(size_of(camera)).minCoeff(), 1e-6);
+/// Turns a point clockwise with the image; both are measured from the image's top-left corner.
+Vector2d turned(const Vector2d& from_corner, const Vector2d& size, int quarter_turns) {
+  if (quarter_turns == 0) return from_corner;
+  const Vector2d once(size.y() - from_corner.y(), from_corner.x());
+  return turned(once, size.reverse(), quarter_turns - 1);
+}
+
+double fitting_scale(const ShownImage& image, const ScreenRect& rect) {
+  return std::max(rect.size.cwiseQuotient(image.size()).minCoeff(), 1e-6);
 }
 
 constexpr double kSteepest_deg = 89;
@@ -49,42 +58,57 @@ Reach reach(std::span<const Vector3d> points_v, int axis, double before, double 
 
 }  // namespace
 
-ImageMapping map_image(const Camera& camera,
+Vector2d ShownImage::size() const {
+  return turned_size(Vector2d(camera.width, camera.height), quarter_turns);
+}
+
+Vector2d ImageMapping::end() const { return origin + scale * turned_size(raw_size, quarter_turns); }
+
+ImageMapping map_image(const ShownImage& image,
                        const ScreenRect& rect,
                        const ImageZoom& zoom,
                        bool undistorted) {
-  const double scale = fitting_scale(camera, rect) * zoom.factor;
-  const Vector2d at = rect.min + rect.size / 2 - scale * zoom.center.cwiseProduct(size_of(camera));
-  return {at.array().round(), scale, undistorted ? &camera : nullptr};
+  const double scale = fitting_scale(image, rect) * zoom.factor;
+  const Vector2d at = rect.min + rect.size / 2 - scale * zoom.center.cwiseProduct(image.size());
+  return {.origin = at.array().round(),
+          .scale = scale,
+          .raw_size = Vector2d(image.camera.width, image.camera.height),
+          .quarter_turns = image.quarter_turns,
+          .undistorted = undistorted ? &image.camera : nullptr};
 }
 
 Vector2d to_screen(const ImageMapping& mapping, const Vector2d& raw_px) {
-  const Vector2d shown_px =
+  const Vector2d pixel =
       mapping.undistorted != nullptr ? undistort(*mapping.undistorted, raw_px) : raw_px;
-  return mapping.origin + mapping.scale * (shown_px + Vector2d::Constant(0.5));
+  const Vector2d from_corner = pixel + Vector2d::Constant(0.5);
+  return mapping.origin +
+         mapping.scale * turned(from_corner, mapping.raw_size, mapping.quarter_turns);
 }
 
 Vector2d to_image(const ImageMapping& mapping, const Vector2d& screen_px) {
-  const Vector2d shown_px = (screen_px - mapping.origin) / mapping.scale - Vector2d::Constant(0.5);
-  return mapping.undistorted != nullptr ? distort(*mapping.undistorted, shown_px) : shown_px;
+  const Vector2d shown = (screen_px - mapping.origin) / mapping.scale;
+  const int back = (4 - mapping.quarter_turns) % 4;
+  const Vector2d pixel = turned(shown, turned_size(mapping.raw_size, mapping.quarter_turns), back) -
+                         Vector2d::Constant(0.5);
+  return mapping.undistorted != nullptr ? distort(*mapping.undistorted, pixel) : pixel;
 }
 
 ImageZoom zoom_about(ImageZoom zoom,
-                     const Camera& camera,
+                     const ShownImage& image,
                      const ScreenRect& rect,
                      const Vector2d& pointer,
                      double by) {
   const double before = zoom.factor;
   zoom.factor = std::clamp(zoom.factor * by, 1.0, kLargestImageZoom);
   // center + (pointer - middle) / (scale size) is the same point before and after.
-  const double fit = fitting_scale(camera, rect);
-  const Vector2d offset = (pointer - rect.min - rect.size / 2).cwiseQuotient(fit * size_of(camera));
+  const double fit = fitting_scale(image, rect);
+  const Vector2d offset = (pointer - rect.min - rect.size / 2).cwiseQuotient(fit * image.size());
   zoom.center += offset * (1 / before - 1 / zoom.factor);
-  return pan(zoom, camera, rect, Vector2d::Zero());
+  return pan(zoom, image, rect, Vector2d::Zero());
 }
 
-ImageZoom pan(ImageZoom zoom, const Camera& camera, const ScreenRect& rect, const Vector2d& by) {
-  zoom.center -= by.cwiseQuotient(fitting_scale(camera, rect) * zoom.factor * size_of(camera));
+ImageZoom pan(ImageZoom zoom, const ShownImage& image, const ScreenRect& rect, const Vector2d& by) {
+  zoom.center -= by.cwiseQuotient(fitting_scale(image, rect) * zoom.factor * image.size());
   zoom.center = zoom.center.cwiseMax(0.0).cwiseMin(1.0);
   if (zoom.factor <= 1) zoom.center.setConstant(0.5);
   return zoom;

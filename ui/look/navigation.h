@@ -22,19 +22,34 @@ struct ScreenRect {
 
 struct ImageZoom {
   double factor = 1;                          ///< 1: the whole image fits [-]
-  Vector2d center = Vector2d::Constant(0.5);  ///< in the middle [0..1 of the image]
+  Vector2d center = Vector2d::Constant(0.5);  ///< in the middle [0..1 of the shown image]
 
   bool operator==(const ImageZoom&) const = default;
 };
 
-/// Maps between image and screen. The image's top-left corner, (-0.5, -0.5), is at `origin`.
+/// An image as a view shows it: turned clockwise from how the sensor recorded it.
+struct ShownImage {
+  ShownImage(const Camera& camera, int quarter_turns = 0)
+      : camera(camera), quarter_turns(quarter_turns) {}
+
+  const Camera& camera;
+  int quarter_turns;  ///< 0 to 3
+
+  Vector2d size() const;  ///< [px] width and height as shown
+};
+
+/// Maps between image and screen. The top-left corner of the shown image is at `origin`.
 struct ImageMapping {
-  Vector2d origin = Vector2d::Zero();  ///< whole screen pixels
-  double scale = 1;                    ///< screen pixels per image pixel
+  Vector2d origin = Vector2d::Zero();    ///< whole screen pixels
+  double scale = 1;                      ///< screen pixels per image pixel
+  Vector2d raw_size = Vector2d::Ones();  ///< [px] of the recorded image
+  int quarter_turns = 0;                 ///< see `ShownImage`
   /// If set, the image is undistorted; points beyond the range of the lens model are NaN.
   const Camera* undistorted = nullptr;
+
+  Vector2d end() const;  ///< bottom-right corner of the shown image [screen px]
 };
-ImageMapping map_image(const Camera& camera,
+ImageMapping map_image(const ShownImage& image,
                        const ScreenRect& rect,
                        const ImageZoom& zoom,
                        bool undistorted = false);
@@ -43,12 +58,12 @@ Vector2d to_image(const ImageMapping& mapping, const Vector2d& screen_px);
 
 /// Multiplies the zoom by `by`, within 1..64, and keeps the point under the pointer in place.
 ImageZoom zoom_about(ImageZoom zoom,
-                     const Camera& camera,
+                     const ShownImage& image,
                      const ScreenRect& rect,
                      const Vector2d& pointer,
                      double by);
 /// Moves the image by screen pixels, its center no further than its border.
-ImageZoom pan(ImageZoom zoom, const Camera& camera, const ScreenRect& rect, const Vector2d& by);
+ImageZoom pan(ImageZoom zoom, const ShownImage& image, const ScreenRect& rect, const Vector2d& by);
 
 constexpr double kLargestNormalsZoom = 400;
 

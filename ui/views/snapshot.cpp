@@ -82,7 +82,7 @@ cv::Mat snapshot_image(const Inspection& inspection,
                        std::optional<cv::Size> size,
                        const ViewOptions& options) {
   const Recording& recording = *inspection.recording;
-  const cv::Size pixels = size.value_or(cv::Size(recording.camera.width, recording.camera.height));
+  const cv::Size pixels = size.value_or(shown_size(recording));
   const auto draw = [&](ImageTexture& texture, const Area& area) {
     if (recording.images) texture.upload(recording.images->bgr(frame));
     draw_image_view(area, {inspection, frame, options}, &texture);

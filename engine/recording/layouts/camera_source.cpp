@@ -8,6 +8,7 @@
 #include "engine/recording/layouts/open_recording.h"
 #include "engine/recording/loggers/logs.h"
 
+#include <array>
 #include <cmath>
 #include <exception>
 
@@ -43,6 +44,21 @@ std::optional<FieldOfView> view_of_angle(double diagonal_deg,
   if (!is_within(diagonal_deg, kLeastView_deg, kMostView_deg)) return std::nullopt;
   const double half_rad = radians(diagonal_deg) / 2;
   return FieldOfView{0.5 / (fisheye ? half_rad : std::tan(half_rad)), fisheye, source};
+}
+
+/// Returns an image's EXIF; empty if it is missing or unreadable.
+Exiv2::ExifData exif_of(const fs::path& photo) {
+  static std::mutex one_at_a_time;  // required by Exiv2's XMP reader
+  const std::scoped_lock lock(one_at_a_time);
+  Exiv2::LogMsg::setLevel(Exiv2::LogMsg::mute);
+  try {
+    // An absolute path cannot be mistaken for a URL.
+    const auto image = Exiv2::ImageFactory::open(fs::absolute(photo).string(), false);
+    image->readMetadata();
+    return image->exifData();
+  } catch (const std::exception&) {
+    return {};
+  }
 }
 
 /// Returns 0 for a missing tag; EXIF itself uses it for "unknown".
@@ -131,18 +147,14 @@ std::optional<FieldOfView> stored_view(const fs::path& file) {
   return gopro ? gopro : view_of_metadata(file);
 }
 
-std::optional<FieldOfView> view_of_exif(const fs::path& photo) {
-  static std::mutex one_at_a_time;  // required by Exiv2's XMP reader
-  const std::scoped_lock lock(one_at_a_time);
-  Exiv2::LogMsg::setLevel(Exiv2::LogMsg::mute);
-  try {
-    // An absolute path cannot be mistaken for a URL.
-    const auto image = Exiv2::ImageFactory::open(fs::absolute(photo).string(), false);
-    image->readMetadata();
-    return view_of(image->exifData());
-  } catch (const std::exception&) {
-    return std::nullopt;
-  }
+std::optional<FieldOfView> view_of_exif(const fs::path& photo) { return view_of(exif_of(photo)); }
+
+int quarter_turns_of_exif(std::span<const fs::path> image_files) {
+  if (image_files.empty() || kind_of(image_files.front()) != FileKind::image) return 0;
+  // Mirrored images (2, 4, 5, 7) are turned until they only lack the mirroring.
+  constexpr std::array kTurns = {0, 0, 0, 2, 2, 1, 1, 3, 3};
+  const double orientation = number(exif_of(image_files.front()), "Exif.Image.Orientation");
+  return is_within(orientation, 1, 8) ? kTurns[static_cast<std::size_t>(orientation)] : 0;
 }
 
 std::optional<FieldOfView> view_of_metadata(const fs::path& video) {

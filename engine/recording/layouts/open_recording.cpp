@@ -63,10 +63,9 @@ std::vector<std::string> recordings_below(const fs::path& folder) {
   constexpr int kMostEntries = 1000;
   std::vector<std::string> names;
   std::error_code error, none;
-  int entries = 0;
   fs::recursive_directory_iterator entry(folder, error);
-  for (; !error && entry != end(entry) && names.size() < 3; entry.increment(error)) {
-    if (++entries > kMostEntries) break;
+  for (int k = 0; !error && entry != end(entry) && names.size() < 3; entry.increment(error)) {
+    if (++k > kMostEntries) break;
     if (!entry->is_directory(none)) continue;
     const bool found = find_layout(entry->path(), {}).has_value();
     if (found) names.push_back(entry->path().lexically_relative(folder).string());
@@ -271,6 +270,7 @@ std::shared_ptr<const Recording> open_recording(const fs::path& path, const Open
   add_sidecars(recording, found);
   set_bias_from_stationary_interval(recording);
   add_notes(recording);
+  recording.quarter_turns = quarter_turns_of_exif(recording.image_files);
   if (recording.images) recording.images->bgr(0);  // detects a wrong size or format
   return std::make_shared<const Recording>(std::move(recording));
 }

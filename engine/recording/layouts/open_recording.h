@@ -105,6 +105,10 @@ struct FieldOfView {
 /// nullopt if it is missing, unreadable or implausible: outside of 10 to 170 deg or 5 to 500 mm.
 std::optional<FieldOfView> stored_view(const fs::path& file);
 
+/// Returns the clockwise quarter turns that the first file's EXIF asks for, without its mirroring;
+/// 0 if that file is no image.
+int quarter_turns_of_exif(std::span<const fs::path> image_files);
+
 /// From EXIF: the 35 mm equivalent focal length, or the real one and the sensor's pixel size.
 std::optional<FieldOfView> view_of_exif(const fs::path& image);
 

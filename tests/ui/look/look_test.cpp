@@ -14,6 +14,7 @@
 #include <Eigen/LU>
 #include <fmt/format.h>
 #include <gmock/gmock.h>
+#include <opencv2/core.hpp>
 #include <vtkCamera.h>
 #include <vtkMatrix4x4.h>
 #include <vtkNew.h>
@@ -118,10 +119,32 @@ TEST(ImageZoom, FitsAndCentersTheImageAndPutsPixelCentersHalfAPixelFromTheCorner
   const ImageMapping mapping = map_image(kZoomedCamera, kZoomedRect, {});
   EXPECT_DOUBLE_EQ(mapping.scale, 1);
   EXPECT_EQ(mapping.origin, Vector2d(100 + 320, 50));
-  const ImageMapping to{{10, 20}, 4};
+  const ImageMapping to{.origin = {10, 20}, .scale = 4};
   EXPECT_EQ(to_screen(to, {0, 0}), Vector2d(12, 22));
   EXPECT_EQ(to_screen(to, {-0.5, -0.5}), Vector2d(10, 20));
   EXPECT_LT((to_image(to, to_screen(to, {3.25, 7.5})) - Vector2d(3.25, 7.5)).norm(), 1e-12);
+}
+
+TEST(ImageZoom, TurnsPixelsLikeOpenCv) {
+  const Camera camera{.width = 7, .height = 5};
+  cv::Mat numbers(5, 7, CV_32S);
+  for (int i = 0; i < 35; ++i) numbers.at<int>(i / 7, i % 7) = i;
+  for (const auto& [turns, code] : {std::pair{1, cv::ROTATE_90_CLOCKWISE},
+                                    {2, cv::ROTATE_180},
+                                    {3, cv::ROTATE_90_COUNTERCLOCKWISE}}) {
+    cv::Mat turned;
+    cv::rotate(numbers, turned, code);
+    const ShownImage image(camera, turns);
+    EXPECT_EQ(image.size(), Vector2d(turned.cols, turned.rows));
+    const ImageMapping mapping = map_image(image, {{20, 30}, 10 * image.size()}, {});
+    EXPECT_EQ(mapping.end(), Vector2d(20, 30) + 10 * image.size());
+    for (int i = 0; i < 35; ++i) {
+      const Vector2d raw_px(i % 7, i / 7), screen = to_screen(mapping, raw_px);
+      const Vector2d shown = (screen - Vector2d(20, 30)) / 10;
+      EXPECT_EQ(turned.at<int>(static_cast<int>(shown.y()), static_cast<int>(shown.x())), i);
+      EXPECT_EQ(to_image(mapping, screen), raw_px);
+    }
+  }
 }
 
 TEST(ImageZoom, KeepsThePointUnderThePointer) {

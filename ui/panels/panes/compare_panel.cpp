@@ -191,7 +191,7 @@ void draw_columns(const PanelContext& ui, int frame, const ScreenRect& visible) 
   ImDrawList& list = *ImGui::GetWindowDrawList();
   const CompareFrame shown{recording, frame, shown_image(ui.views), options};
   draw_compare_view({list, rect}, columns, shown);
-  const auto places = compare_places(rect, count, aspect_of(recording.camera), options.top_line);
+  const auto places = compare_places(rect, count, aspect_of(recording), options.top_line);
   const ImageZoom zoom = compare_zoom(columns, shown, places.front().image.size);
   for (std::size_t i = 0; i < places.size(); ++i) {
     choose_by_heading(ui, places[i].heading, columns[i]);

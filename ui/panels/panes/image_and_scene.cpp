@@ -152,15 +152,15 @@ void zoom_and_pan(const Pointer& pointer) {
                           drag_cube(pointer.ui, pointer.frame, pointer.mapping);
   const WorkbenchState& state = pointer.ui.state;
   const ImageZoom& zoom = state.view.image_zoom;
-  const Camera& camera = state.document.recording->camera;
+  const ShownImage image = as_shown(*state.document.recording);
   const auto change = [&](const ImageZoom& to) { push(pointer.ui.commands, ZoomImage{to}); };
   if (const double by = wheel_zoom(); by != 1)
-    change(zoom_about(zoom, camera, pointer.rect, pointer.at, by));
+    change(zoom_about(zoom, image, pointer.rect, pointer.at, by));
   const Vector2d drag = drag_px();
   if (is_item_double_clicked())
     change({});
   else if (!drag.isZero() && !ImGui::GetIO().KeyShift && !drags_cube)
-    change(pan(zoom, camera, pointer.rect, drag));
+    change(pan(zoom, image, pointer.rect, drag));
 }
 
 /// Returns the tracks inside the dragged rectangle of the screen, which may be undistorted.
@@ -239,7 +239,7 @@ void draw_overlays(const Pointer& pointer, const Rectangle& place, ImDrawList& l
   const Area area{list, pointer.rect};
   ui.views.legend_hits = draw_image_view(area, view, shown_image(ui.views));
   if (inspection) draw_highlight_in_image(area, view, pointer.mapping, highlight_of(state));
-  draw_pixel_grid(area, pointer.mapping, camera);
+  draw_pixel_grid(area, pointer.mapping);
   draw_rectangle(pointer, list);
   draw_picked_points(state, area, view, pointer.mapping);
   if (takes_mask(state, pointer.frame)) draw_unfinished_mask(ui, area, pointer.mapping);
@@ -261,9 +261,9 @@ void draw_panel(const PanelContext& ui, const Rectangle& place) {
                ImGuiButtonFlags_MouseButtonRight);
   const ScreenRect rect = screen_rect(place);
   const ViewState& view = state.view;
-  const Camera& camera = state.document.recording->camera;
+  const ShownImage image = as_shown(*state.document.recording);
   const Pointer pointer{
-      ui, frame, rect, map_image(camera, rect, view.image_zoom, view.toggles.undistorted)};
+      ui, frame, rect, map_image(image, rect, view.image_zoom, view.toggles.undistorted)};
   zoom_and_pan(pointer);
   const std::optional<LegendHit> legend = legend_under(pointer);
   const auto track = legend ? std::nullopt : pointer.track();

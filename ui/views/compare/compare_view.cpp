@@ -68,6 +68,7 @@ double common_cube_side(CompareColumns columns, const Inspection& inspection, do
   return cube_side(*first->inspection, chosen) / model.unit * inspection.cube->unit;
 }
 
+/// Returns a box around all cubes in the shown image [px from its top-left corner].
 Eigen::AlignedBox2d cubes_box(CompareColumns columns, int frame, const ViewOptions& options) {
   Eigen::AlignedBox2d box;
   for (const Compared& column : columns) {
@@ -75,21 +76,25 @@ Eigen::AlignedBox2d cubes_box(CompareColumns columns, int frame, const ViewOptio
     const Inspection& inspection = *column.inspection;
     const FrameView view{inspection, frame, options};
     if (!view.inside()) continue;
+    const ShownImage image = as_shown(*inspection.recording);
+    const ImageMapping whole = map_image(image, {.size = image.size()}, {});
     const CubeSize size{common_cube_side(columns, inspection, options.cube_side),
                         options.cube_height_sides};
     for (const auto& cube : {estimated_cube(inspection, view.in_window(), size),
                              true_cube(inspection, view.in_window(), size)})
       for (const CubeEdge& edge : cube.value_or(CubeImage{}).edges)
-        for (const Vector2d& pixel : edge.raw_px) box.extend(pixel);
+        for (const Vector2d& pixel : edge.raw_px) box.extend(to_screen(whole, pixel));
   }
   return box;
 }
 
 /// Returns the part of the image around the cubes; the whole image if there are none.
-ImageZoom zoom_on(const Eigen::AlignedBox2d& cubes, const Camera& camera, const Vector2d& rect) {
+ImageZoom zoom_on(const Eigen::AlignedBox2d& cubes,
+                  const Recording& recording,
+                  const Vector2d& rect) {
   constexpr double kSurroundings = 2.2;  // size of the part [sizes of the box]
   constexpr double kMostZoom = 3;
-  const Vector2d size(camera.width, camera.height);
+  const Vector2d size = as_shown(recording).size();
   const Eigen::AlignedBox2d box = cubes.intersection({Vector2d::Zero(), size});
   if (box.isEmpty()) return {};
   const double fit = rect.cwiseQuotient(size).minCoeff();
@@ -266,9 +271,10 @@ void draw_column_image(const Area& area, const Compared& column, const CompareFr
 
 }  // namespace
 
-double aspect_of(const Camera& camera) {
-  if (camera.width <= 0) return 4.0 / 3;
-  return std::clamp(static_cast<double>(camera.width) / camera.height, 1 / 1.5, 1 / 0.4);
+double aspect_of(const Recording& recording) {
+  const Vector2d size = as_shown(recording).size();
+  if (size.x() <= 0) return 4.0 / 3;
+  return std::clamp(size.x() / size.y(), 1 / 1.5, 1 / 0.4);
 }
 
 std::vector<ColumnPlace> compare_places(const ScreenRect& rect,
@@ -288,7 +294,7 @@ ImageZoom compare_zoom(CompareColumns columns,
                        const Vector2d& image_size) {
   if (shown.options.compare_zoom) return *shown.options.compare_zoom;
   const auto box = cubes_box(columns, shown.frame, shown.options);
-  return zoom_on(box, shown.recording.camera, image_size);
+  return zoom_on(box, shown.recording, image_size);
 }
 
 void draw_compare_view(const Area& area, CompareColumns columns, const CompareFrame& shown) {
@@ -305,7 +311,7 @@ void draw_compare_view(const Area& area, CompareColumns columns, const CompareFr
   column_options.reference = first;
   if (first != nullptr)
     column_options.reference_side = common_cube_side(columns, *first, options.cube_side);
-  const double aspect = aspect_of(shown.recording.camera);
+  const double aspect = aspect_of(shown.recording);
   const auto count = static_cast<int>(columns.size());
   const auto places = compare_places(area.rect, count, aspect, options.top_line);
   column_options.image_zoom = compare_zoom(columns, shown, places.front().image.size);
@@ -343,7 +349,7 @@ double draw_cube_legend(ImDrawList& list, const Vector2d& at, bool truth) {
 cv::Size default_compare_size(int columns, const Recording& recording) {
   constexpr int kMostColumns = 4;
   const int count = std::max(1, columns), rows = (count + kMostColumns - 1) / kMostColumns;
-  const double image_height = std::round(kColumn / aspect_of(recording.camera));
+  const double image_height = std::round(kColumn / aspect_of(recording));
   return {static_cast<int>((count + rows - 1) / rows * (kColumn + kGap) + kGap),
           static_cast<int>(rows * (kHeading + image_height + kCaption) + kTopLine)};
 }

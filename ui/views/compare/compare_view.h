@@ -23,7 +23,7 @@ struct CompareFrame {
 };
 
 /// Returns width / height of the images, limited to what a column can show well; 4:3 if unknown.
-double aspect_of(const Camera& camera);
+double aspect_of(const Recording& recording);
 
 /// Arranges columns in the number of rows that makes images of this aspect largest.
 std::vector<ColumnPlace> compare_places(const ScreenRect& rect,

@@ -47,17 +47,20 @@ void draw_quad(ImDrawList& list, void* texture, const std::array<TexturePoint, 4
       texture, a.screen, b.screen, c.screen, d.screen, a.share, b.share, c.share, d.share);
 }
 
-void draw_undistorted(const ImageCanvas& canvas, void* texture) {
-  constexpr int kCells = 64;  // per side: small enough that the lens is linear within
-  std::array<std::array<TexturePoint, kCells + 1>, kCells + 1> at;
-  for (int i = 0; i <= kCells; ++i)
-    for (int j = 0; j <= kCells; ++j) {
-      const Vector2d from_corner = Vector2d(i, j).cwiseProduct(size_of(canvas.camera)) / kCells;
-      at[i][j] = texture_point(canvas, from_corner - Vector2d::Constant(0.5));
-    }
-  for (int i = 0; i < kCells; ++i)
-    for (int j = 0; j < kCells; ++j)
-      draw_quad(canvas.list, texture, {at[i][j], at[i + 1][j], at[i + 1][j + 1], at[i][j + 1]});
+/// Draws the image in `cells` x `cells` parts.
+void draw_cells(const ImageCanvas& canvas, void* texture, int cells) {
+  const auto corner = [&](int i, int j) {
+    const Vector2d from_corner = Vector2d(i, j).cwiseProduct(size_of(canvas.camera)) / cells;
+    return texture_point(canvas, from_corner - Vector2d::Constant(0.5));
+  };
+  std::vector<TexturePoint> left(cells + 1), right(cells + 1);
+  for (int j = 0; j <= cells; ++j) right[j] = corner(0, j);
+  for (int i = 1; i <= cells; ++i) {
+    left.swap(right);
+    for (int j = 0; j <= cells; ++j) right[j] = corner(i, j);
+    for (int j = 0; j < cells; ++j)
+      draw_quad(canvas.list, texture, {left[j], right[j], right[j + 1], left[j + 1]});
+  }
 }
 
 std::vector<ImVec2> points_on_screen(const ImageCanvas& canvas, const Outline& raw_px) {
@@ -145,15 +148,16 @@ void draw_image(const ImageCanvas& canvas, ImageTexture* image) {
   ImDrawList& list = canvas.list;
   const ImageMapping& mapping = canvas.mapping;
   const ImVec2 low = to_imgui(mapping.origin);
-  const ImVec2 high = to_imgui(mapping.origin + mapping.scale * size_of(canvas.camera));
+  const ImVec2 high = to_imgui(mapping.end());
   draw_surroundings(canvas, low, high);
   if (image == nullptr || image->id() == nullptr)
     return list.AddRectFilled(low, high, imgui_color(Role::raised));
   image->set_screen_scale(mapping.scale);
   mark_content(list, image->revision());
-  if (mapping.undistorted == nullptr) return list.AddImage(image->id(), low, high);
+  if (mapping.undistorted == nullptr) return draw_cells(canvas, image->id(), 1);
   list.AddRectFilled(low, high, imgui_color(Role::background));
-  draw_undistorted(canvas, image->id());
+  constexpr int kCells = 64;  // small enough that the lens is linear within
+  draw_cells(canvas, image->id(), kCells);
 }
 
 void draw_part(const ImageCanvas& canvas, const ImageTexture& image, const Triangle& triangle) {

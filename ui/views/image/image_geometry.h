@@ -135,7 +135,7 @@ void draw_wireframe(const ImageCanvas& canvas, const CubeImage& cube, std::uint3
 
 struct CubeBody {
   const CubeImage& cube;
-  Outlines rings;  ///< `contact_shadow`
+  Outlines rings;                      ///< `contact_shadow`
   std::uint32_t edges = 0, faces = 0;  ///< colors
 };
 /// Draws the cube in soft light; of a model only shadow and base.

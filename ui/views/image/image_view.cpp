@@ -226,10 +226,8 @@ void draw_results(const Canvas& canvas) {
   // The image ends at its border, and so does the cube. An undistorted image has no straight
   // border.
   const bool straight = canvas.mapping.undistorted == nullptr;
-  const Vector2d size = canvas.mapping.scale * Vector2d(canvas.camera.width, canvas.camera.height);
   if (straight)
-    canvas.list.PushClipRect(
-        to_imgui(canvas.mapping.origin), to_imgui(canvas.mapping.origin + size), true);
+    canvas.list.PushClipRect(to_imgui(canvas.mapping.origin), to_imgui(canvas.mapping.end()), true);
   draw_cubes(canvas);
   if (straight) canvas.list.PopClipRect();
 }
@@ -251,8 +249,7 @@ LegendRow extrapolation_row(const FrameView& view) {
 void draw_extrapolated_frame(const Canvas& canvas) {
   const float s = overlay_scale();
   const Vector2d from = canvas.mapping.origin + Vector2d::Constant(2 * s);
-  const Vector2d size = canvas.mapping.scale * Vector2d(canvas.camera.width, canvas.camera.height) -
-                        Vector2d::Constant(4 * s);
+  const Vector2d size = canvas.mapping.end() - Vector2d::Constant(2 * s) - from;
   const std::array<Vector2d, 5> outline = {
       from, from + Vector2d(size.x(), 0), from + size, from + Vector2d(0, size.y()), from};
   const std::array pattern = {12.0 * s, 8.0 * s};
@@ -277,12 +274,25 @@ double cube_side(const Inspection& inspection, double chosen) {
   return default_cube_side(*inspection.cube, inspection.initialization->plane.distance);
 }
 
+ShownImage as_shown(const Recording& recording) {
+  return {recording.camera, recording.quarter_turns};
+}
+
+cv::Size shown_size(const Recording& recording) {
+  const Vector2d size = as_shown(recording).size();
+  return {static_cast<int>(size.x()), static_cast<int>(size.y())};
+}
+
 LegendHits draw_image_view(const Area& area, const FrameView& view, ImageTexture* image) {
   const auto& [inspection, frame, options] = view;
   const Camera& camera = inspection.recording->camera;
   const bool undistorted = options.show.undistorted;
   const Canvas canvas{
-      {area, camera, map_image(camera, area.rect, options.image_zoom, undistorted)}, view, image};
+      {area,
+       camera,
+       map_image(as_shown(*inspection.recording), area.rect, options.image_zoom, undistorted)},
+      view,
+      image};
   area.clip();
   draw_image(canvas, image);
   LegendRows rows;

@@ -39,6 +39,11 @@ struct FrameView {
   bool inside() const { return in_window() >= 0 && in_window() < inspection.window->frame_count(); }
 };
 
+/// Returns the recording's image as all views show it.
+ShownImage as_shown(const Recording& recording);
+/// Returns its size [px].
+cv::Size shown_size(const Recording& recording);
+
 /// Draws image, tracks, cube, legend, or why it failed. `image`: null or empty without images.
 /// Returns the rows of the legend that can be clicked; none without `legend_line`.
 LegendHits draw_image_view(const Area& area, const FrameView& view, ImageTexture* image);
@@ -135,6 +140,6 @@ std::string pixel_text(const PixelReadout& readout);
 void draw_pixel_text(const Area& area, const std::string& text);
 
 /// Draws lines between pixels if these are large enough on the screen.
-void draw_pixel_grid(const Area& area, const ImageMapping& mapping, const Camera& camera);
+void draw_pixel_grid(const Area& area, const ImageMapping& mapping);
 
 }  // namespace gpo

@@ -308,17 +308,17 @@ void draw_pixel_text(const Area& area, const std::string& text) {
   write_text(area.list, Font::small, at + Vector2d(8 * s, 3 * s), text);
 }
 
-void draw_pixel_grid(const Area& area, const ImageMapping& mapping, const Camera& camera) {
+void draw_pixel_grid(const Area& area, const ImageMapping& mapping) {
   constexpr double kLeastScale = 8;
   // Undistorted pixels are not squares.
   if (mapping.scale < kLeastScale * overlay_scale() || mapping.undistorted != nullptr) return;
   const ImU32 color = imgui_color(Role::text, 0.12);
-  const Vector2d first = to_image(mapping, area.rect.min);
-  const Vector2d last = to_image(mapping, area.rect.min + area.rect.size);
-  const int left = std::max(0, static_cast<int>(first.x()));
-  const int right = std::min(camera.width, static_cast<int>(last.x()) + 1);
-  const int top = std::max(0, static_cast<int>(first.y()));
-  const int bottom = std::min(camera.height, static_cast<int>(last.y()) + 1);
+  const Vector2d a = to_image(mapping, area.rect.min);
+  const Vector2d b = to_image(mapping, area.rect.min + area.rect.size);
+  const Vector2d first = a.cwiseMin(b).cwiseMax(0);
+  const Vector2d last = (a.cwiseMax(b).array() + 1).min(mapping.raw_size.array());
+  const int left = static_cast<int>(first.x()), top = static_cast<int>(first.y());
+  const int right = static_cast<int>(last.x()), bottom = static_cast<int>(last.y());
   const auto line = [&](double u0, double v0, double u1, double v1) {
     area.list.AddLine(
         to_imgui(to_screen(mapping, {u0, v0})), to_imgui(to_screen(mapping, {u1, v1})), color);

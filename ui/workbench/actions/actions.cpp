@@ -214,12 +214,18 @@ bool Arguments::on_off(bool now, std::size_t i) const {
   throw InputError(fmt::format("{}: '{}', expected on or off", action, words[i]));
 }
 
-ImageZoom Arguments::zoom(const Camera& camera) const {
+ImageZoom Arguments::zoom(const Recording& recording) const {
   ImageZoom zoom;
   zoom.factor = std::clamp(number(), 1.0, 64.0);
-  if (words.size() > 1)
-    zoom.center =
-        Vector2d(number(1) / camera.width, number(2) / camera.height).cwiseMax(0).cwiseMin(1);
+  if (words.size() > 1) {
+    const ShownImage image(recording.camera, recording.quarter_turns);
+    const ImageMapping whole = map_image(image, {.size = image.size()}, {});
+    const Vector2d from_corner(number(1), number(2));
+    zoom.center = to_screen(whole, from_corner - Vector2d::Constant(0.5))
+                      .cwiseQuotient(image.size())
+                      .cwiseMax(0)
+                      .cwiseMin(1);
+  }
   return zoom;
 }
 

@@ -31,7 +31,7 @@ struct Arguments {
   /// Reads "on" or "off"; toggles `now` if there is no word at `i`.
   bool on_off(bool now, std::size_t i = 0) const;
   /// Reads FACTOR [X Y]: enlarged around a pixel, by default the center of the image.
-  ImageZoom zoom(const Camera& camera) const;
+  ImageZoom zoom(const Recording& recording) const;
 };
 
 /// A named action. Keys, menus, palette, help window, scripts and tests read the table.

@@ -169,7 +169,7 @@ void add_zooms(const MenuRows& menu) {
   menu.add({"zoom", "Zoom the image", "Enlarges the image around a point"},
            "FACTOR [X Y]",
            [](State& s, const Arguments& arguments) {
-             s.view.image_zoom = arguments.zoom(s.document.recording->camera);
+             s.view.image_zoom = arguments.zoom(*s.document.recording);
            });
   menu.add({"zoom-normals",
             "Zoom the normals",
@@ -256,8 +256,7 @@ void add_zoom_and_flip(const MenuRows& menu) {
            "[FACTOR [X Y]]",
            [](State& s, const Arguments& arguments) {
              s.view.compare_zoom.reset();
-             if (!arguments.empty())
-               s.view.compare_zoom = arguments.zoom(s.document.recording->camera);
+             if (!arguments.empty()) s.view.compare_zoom = arguments.zoom(*s.document.recording);
            });
   Action& flip = menu.toggle(
       {"flip",

@@ -155,6 +155,23 @@ TEST_F(StoredViews, ReadsTheEquivalentFocalLengthFromAVideo) {
   EXPECT_FALSE(stored_view(folder.write("b.mov", "no video")));
 }
 
+TEST_F(StoredViews, OrientationInExifTurnsWhatIsShown) {
+  const auto turns = [&](int orientation) {
+    const std::string tiff = std::string("MM\0*", 4) + big_endian({8}, 4) + big_endian({1}, 2) +
+                             big_endian({0x112, 3}, 2) + big_endian({1}, 4) +
+                             big_endian({orientation, 0}, 2) + big_endian({0}, 4);
+    const std::string content = std::string("Exif\0\0", 6) + tiff;
+    const std::vector files = {
+        image("\xFF\xE1" + big_endian({std::ssize(content) + 2}, 2) + content)};
+    return quarter_turns_of_exif(files);
+  };
+  for (const auto& [orientation, expected] :
+       {std::pair{1, 0}, {3, 2}, {6, 1}, {8, 3}, {2, 0}, {4, 2}, {5, 1}, {7, 3}, {0, 0}, {9, 0}})
+    EXPECT_EQ(turns(orientation), expected) << orientation;
+  EXPECT_EQ(quarter_turns_of_exif({}), 0);
+  EXPECT_EQ(quarter_turns_of_exif(std::vector{video({})}), 0);
+}
+
 std::string box(const std::string& kind, const std::string& content) {
   return big_endian({std::ssize(content) + 8}, 4) + kind + content;
 }
