@@ -27,29 +27,30 @@ PlaneSolution minimize(const PlaneTask& task, const PlaneMotion& start, const Wa
   SolverReport& report = solution.solver;
   report.unknowns = problem.unknown_count();
   report.termination = Termination::no_convergence;
-  Linearized at = problem.linearize(start);
+  Linearized<S> at, there;
+  problem.linearize(start, at);
   report.initial_cost = at.cost;
   if (!at.in_front || !std::isfinite(at.cost)) report.termination = Termination::failure;
   report.trace.reserve(kUsualIterations);
-  report.trace.push_back({at.cost, problem.gradient(at, start), 0, start.normal});
+  report.trace.push_back({at.cost, problem.gradient(at), 0, start.normal});
   double damping = 0;
   int hidden_steps = 0;
   while (report.termination == Termination::no_convergence && report.iterations < kMostIterations &&
          !watch.stop_requested()) {
     ++report.iterations;
-    const auto step = problem.step(at, solution.motion, damping);
-    const PlaneMotion moved = problem.moved(solution.motion, step);
-    Linearized there = problem.linearize(moved);
+    const auto step = problem.step(at, damping);
+    PlaneMotion moved = problem.moved(solution.motion, step);
+    problem.linearize(moved, there);
     // Close to the minimum the cost's rounding errors exceed its decrease: accept the step.
     const bool hidden = std::abs(step.decrease) < kRounding * at.cost;
     const bool better = there.in_front && (there.cost <= at.cost || hidden);
     hidden_steps += hidden ? 1 : 0;
     const bool settled = step.length < kSettled || hidden_steps == kMostHiddenSteps;
     if (better) {
-      solution.motion = moved;
-      at = std::move(there);
+      solution.motion = std::move(moved);
+      std::swap(at, there);
       damping = damping > kFirstDamping ? damping / 10 : 0;
-      report.trace.push_back({at.cost, problem.gradient(at, moved), step.norm, moved.normal});
+      report.trace.push_back({at.cost, problem.gradient(at), step.norm, solution.motion.normal});
     } else {
       damping = std::max(10 * damping, kFirstDamping);
       report.trace.push_back(report.trace.back());
