@@ -193,7 +193,8 @@ constexpr Answer kAnswers[] = {{"anchored tracks, gyroscope", 0, RotationModel::
 void answer(State& state, const Answer& of) {
   test::SimulationOptions options{.motion = test::Motion::orbit, .points = 200};
   options.reference_noise_px = of.reference_noise_px;
-  if (of.rotations == RotationModel::bias) options.gyro_bias_rad_s = options.gyro_noise_rad_s = 0.002;
+  if (of.rotations == RotationModel::bias)
+    options.gyro_bias_rad_s = options.gyro_noise_rad_s = 0.002;
   const test::Simulation simulation = test::simulate(options);
   const Method& method = find_method("gpo_joint");
   Initialization result;
@@ -304,8 +305,7 @@ void register_stage_benchmarks() {
     add(solving(room), [room](State& state) { solve(state, room); });
     add(extracting(room), [room](State& state) { extract(state, room); });
   }
-  for (const Answer& of : kAnswers)
-    add(answering(of), [of](State& state) { answer(state, of); });
+  for (const Answer& of : kAnswers) add(answering(of), [of](State& state) { answer(state, of); });
   for (const int seconds : kSeconds)
     add(aligning(seconds), [seconds](State& state) { align(state, seconds); });
   const auto stream = std::make_shared<Stream>(desk_stream());

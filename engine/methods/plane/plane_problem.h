@@ -49,9 +49,7 @@ struct Linearized {
 };
 
 template <class S>
-void add_normals(const FrameNormals& f,
-                 typename Linearized<S>::Frame& frame,
-                 Linearized<S>& sum) {
+void add_normals(const FrameNormals& f, typename Linearized<S>::Frame& frame, Linearized<S>& sum) {
   frame.oo += f.JtJ.template bottomRightCorner<S::kOwn, S::kOwn>();
   frame.o += f.Jtr.template tail<S::kOwn>();
   sum.cost += f.cost;
