@@ -75,14 +75,14 @@ struct Task {
   }
 };
 
+/// `observations`: from the task's window, or from one corrected for a row delay.
 PlaneSolution solve_once(const Task& task,
-                         const Window& window,
                          const PlaneObservations& observations,
                          const PlaneMotion& start,
                          RotationUnknowns rotations,
                          int most_steps = kMostSteps) {
   const bool offset = task.options.time_offset && rotations.model == RotationModel::bias;
-  const PlaneTask plane_task{window,
+  const PlaneTask plane_task{task.window,
                              observations,
                              {.rotations = rotations.model,
                               .time_offset = offset,
@@ -118,8 +118,7 @@ Fit solve(const Task& task,
   for (int round = first; round <= last; ++round) {
     if (round > 0) reweigh(solution.motion, task.options, task.sigma_px, observations);
     const int most_steps = round == 0 || round == last ? kMostSteps : 1;
-    PlaneSolution next =
-        solve_once(task, window, observations, solution.motion, rotations, most_steps);
+    PlaneSolution next = solve_once(task, observations, solution.motion, rotations, most_steps);
     const bool settled = round > 0 && next.solver.iterations <= 1 &&
                          next.solver.termination == Termination::convergence;
     add_effort(solution.solver, next.solver);
@@ -156,7 +155,7 @@ Fit refit(const Task& task,
           .row_delay_s = row_delay_s};
   fit.observations = plane_observations(fit.window, numbers_of(motion.others));
   copy_weights(from.observations, fit.observations);
-  fit.solution = solve_once(task, fit.window, fit.observations, motion, from.rotations);
+  fit.solution = solve_once(task, fit.observations, motion, from.rotations);
   fit.cost = fit.solution.solver.final_cost;
   continue_trace(from.solution.solver, fit.solution.solver);
   return fit;

@@ -56,31 +56,6 @@ void add_normals(const FrameNormals& f, typename Linearized<S>::Frame& frame, Li
   sum.in_front = sum.in_front && f.in_front;
 }
 
-/// Adds the shared unknowns of one plane.
-template <class S>
-void add_plane(const FrameNormals& f,
-               const UnknownsLayout& layout,
-               int plane,
-               const PlaneColumns& M,
-               typename Linearized<S>::Frame& frame,
-               Linearized<S>& sum) {
-  const Eigen::Matrix<double, 8, Eigen::Dynamic, 0, 8, 7> FM = f.JtJ * M;
-  const Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 7, 7> MFM = M.transpose() * FM;
-  const Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 7, 1> Mr = M.transpose() * f.Jtr;
-  const int p = UnknownsLayout::of_plane(plane);
-  const int n = UnknownsLayout::size_of_plane(plane);
-  const int g = layout.of_gyro();
-  const int b = layout.gyro;
-  sum.ss.block(p, p, n, n) += MFM.topLeftCorner(n, n);
-  sum.ss.block(p, g, n, b) += MFM.topRightCorner(n, b);
-  sum.ss.block(g, p, b, n) += MFM.bottomLeftCorner(b, n);
-  sum.ss.block(g, g, b, b) += MFM.bottomRightCorner(b, b);
-  sum.s.segment(p, n) += Mr.head(n);
-  sum.s.segment(g, b) += Mr.tail(b);
-  frame.so.middleRows(p, n) += FM.leftCols(n).template bottomRows<S::kOwn>().transpose();
-  frame.so.middleRows(g, b) += FM.rightCols(b).template bottomRows<S::kOwn>().transpose();
-}
-
 template <class S>
 class PlaneProblem {
  public:
@@ -140,7 +115,7 @@ class PlaneProblem {
           frame.so += f.JtJ.topRightCorner<2, S::kOwn>();
         } else {
           const auto gyro = gyro_columns(window_, motion, i, layout_.gyro);
-          add_plane<S>(f, layout_, k, plane_columns(k, state.tau_c, gyro), frame, all);
+          add_plane(f, k, plane_columns(k, state.tau_c, gyro), frame, all);
         }
       }
     }
@@ -217,6 +192,29 @@ class PlaneProblem {
   bool has_gyro() const { return !kNormalOnly<S> && layout_.gyro > 0; }
   bool has_noise() const { return !kNormalOnly<S> && S::kOwn == 6 && unknowns_.gyro_noise; }
   bool has_clock() const { return !kNormalOnly<S> && layout_.gyro == 4; }
+
+  /// Adds the shared unknowns of one plane.
+  void add_plane(const FrameNormals& f,
+                 int plane,
+                 const PlaneColumns& M,
+                 typename Linearized<S>::Frame& frame,
+                 Linearized<S>& all) const {
+    const Eigen::Matrix<double, 8, Eigen::Dynamic, 0, 8, 7> FM = f.JtJ * M;
+    const Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 7, 7> MFM = M.transpose() * FM;
+    const Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 7, 1> Mr = M.transpose() * f.Jtr;
+    const int p = UnknownsLayout::of_plane(plane);
+    const int n = UnknownsLayout::size_of_plane(plane);
+    const int g = layout_.of_gyro();
+    const int b = layout_.gyro;
+    all.ss.block(p, p, n, n) += MFM.topLeftCorner(n, n);
+    all.ss.block(p, g, n, b) += MFM.topRightCorner(n, b);
+    all.ss.block(g, p, b, n) += MFM.bottomLeftCorner(b, n);
+    all.ss.block(g, g, b, b) += MFM.bottomRightCorner(b, b);
+    all.s.segment(p, n) += Mr.head(n);
+    all.s.segment(g, b) += Mr.tail(b);
+    frame.so.middleRows(p, n) += FM.leftCols(n).template bottomRows<S::kOwn>().transpose();
+    frame.so.middleRows(g, b) += FM.rightCols(b).template bottomRows<S::kOwn>().transpose();
+  }
 
   void add_priors(const PlaneMotion& motion, Linearized<S>& all) const {
     const int g = layout_.of_gyro();
