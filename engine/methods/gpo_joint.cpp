@@ -25,9 +25,12 @@
 namespace gpo {
 namespace {
 
-/// Rounds of reweighting, each started from the previous solution.
-constexpr int kWeightRounds = 10;
-constexpr int kStartRounds = 2;  // for candidate starts
+/// Rounds of reweighting, each started from the previous solution. All but the last take one step.
+struct Rounds {
+  int count = 10;
+  bool start_is_weighted = false;  ///< else it is optimized without weights first
+};
+constexpr Rounds kStartRounds{2};  // for candidate starts
 /// Significance of additional unknowns: chi-square test at 4 sigma.
 constexpr double kSignificantSigmas = 4;
 /// Least ratio of the noise variances that justifies free rotations for every frame. The errors of
@@ -35,11 +38,14 @@ constexpr double kSignificantSigmas = 4;
 /// in EuRoC's room, where the bias alone is right, they lower the variance by up to a sixth. Poor
 /// phone gyroscopes and the wrong one of two decompositions at least double it.
 constexpr double kWorthFreeRotations = 1.25;
+/// The same after one round of reweighting.
+constexpr double kMayBeWorth = 1.1;
 /// First step of the row delay [s/row]: 10 ms for 480 rows.
 constexpr double kTriedRowDelay_s = 2e-5;
 constexpr int kShutterRounds = 4;
 /// Prior of an unknown readout time: a phone's is up to 35 ms, a global shutter's 0 [s].
 constexpr double kReadoutSigma_s = 0.02;
+
 struct RotationUnknowns {
   RotationModel model = RotationModel::known;
   bool gyro_noise = false;
@@ -55,32 +61,28 @@ struct Fit {
   PlaneObservations observations = {};  ///< from `window`, with the weights of the last round
 };
 
-/// automatic: for tracks with noise in the reference frame, and for a rolling shutter.
-bool uses_latent_positions(const Window& window, const MethodOptions& options, double row_delay_s) {
-  if (options.error != ErrorModel::automatic) return options.error == ErrorModel::latent;
-  const bool rolls = row_delay_s != 0 || (options.shutter == Shutter::known && window.row_delay &&
-                                          window.row_delay->mean_s != 0);
-  return !window.exact_reference || rolls;
-}
-
 struct Task {
   const Window& window;
   const MethodOptions& options;
   double sigma_px;
   const Watch& watch;
 
+  /// automatic: for tracks with noise in the reference frame, and for a rolling shutter.
   bool latent(double row_delay_s = 0) const {
-    return uses_latent_positions(window, options, row_delay_s);
+    if (options.error != ErrorModel::automatic) return options.error == ErrorModel::latent;
+    const bool known = options.shutter == Shutter::known && window.row_delay;
+    return !window.exact_reference || row_delay_s != 0 || (known && window.row_delay->mean_s != 0);
   }
 };
 
+/// `observations`: from the task's window, or from one corrected for a row delay.
 PlaneSolution solve_once(const Task& task,
-                         const Window& window,
                          const PlaneObservations& observations,
                          const PlaneMotion& start,
-                         RotationUnknowns rotations) {
+                         RotationUnknowns rotations,
+                         int most_steps = kMostSteps) {
   const bool offset = task.options.time_offset && rotations.model == RotationModel::bias;
-  const PlaneTask plane_task{window,
+  const PlaneTask plane_task{task.window,
                              observations,
                              {.rotations = rotations.model,
                               .time_offset = offset,
@@ -88,7 +90,7 @@ PlaneSolution solve_once(const Task& task,
                               .gyro_noise = rotations.gyro_noise}};
   return task.options.solver == Solver::ceres
              ? solve_plane_with_ceres(plane_task, start, task.watch)
-             : solve_plane(plane_task, start, task.watch);
+             : solve_plane(plane_task, start, task.watch, most_steps);
 }
 
 double robust_cost(const Task& task,
@@ -98,23 +100,29 @@ double robust_cost(const Task& task,
          loss_beyond_weights(solution.motion, task.options, task.sigma_px, observations);
 }
 
+/// Adds the time and iterations of another solution.
+void add_effort(const SolverReport& tried, SolverReport& solver) {
+  solver.milliseconds += tried.milliseconds;
+  solver.iterations += tried.iterations;
+}
+
 Fit solve(const Task& task,
           const PlaneMotion& start,
           RotationUnknowns rotations,
-          int rounds = kWeightRounds) {
+          const Rounds& rounds = {}) {
   const Window& window = task.window;
   PlaneObservations observations = plane_observations(window, numbers_of(start.others));
-  const auto solve_from = [&](const PlaneMotion& from) {
-    return solve_once(task, window, observations, from, rotations);
-  };
-  PlaneSolution solution = solve_from(start);
-  for (int round = 0; is_weighted(task.options) && round < rounds; ++round) {
-    reweigh(solution.motion, task.options, task.sigma_px, observations);
-    PlaneSolution next = solve_from(solution.motion);
-    next.solver.iterations += solution.solver.iterations;
-    next.solver.milliseconds += solution.solver.milliseconds;
-    continue_trace(solution.solver, next.solver);
-    const bool settled = next.solver.iterations <= solution.solver.iterations + 1;
+  const int last = is_weighted(task.options) ? rounds.count : 0;
+  PlaneSolution solution{start, {}};
+  const int first = last > 0 && rounds.start_is_weighted ? 1 : 0;
+  for (int round = first; round <= last; ++round) {
+    if (round > 0) reweigh(solution.motion, task.options, task.sigma_px, observations);
+    const int most_steps = round == 0 || round == last ? kMostSteps : 1;
+    PlaneSolution next = solve_once(task, observations, solution.motion, rotations, most_steps);
+    const bool settled = round > 0 && next.solver.iterations <= 1 &&
+                         next.solver.termination == Termination::convergence;
+    add_effort(solution.solver, next.solver);
+    if (round > first) continue_trace(solution.solver, next.solver);
     solution = std::move(next);
     if (settled) break;
   }
@@ -147,7 +155,7 @@ Fit refit(const Task& task,
           .row_delay_s = row_delay_s};
   fit.observations = plane_observations(fit.window, numbers_of(motion.others));
   copy_weights(from.observations, fit.observations);
-  fit.solution = solve_once(task, fit.window, fit.observations, motion, from.rotations);
+  fit.solution = solve_once(task, fit.observations, motion, from.rotations);
   fit.cost = fit.solution.solver.final_cost;
   continue_trace(from.solution.solver, fit.solution.solver);
   return fit;
@@ -172,14 +180,10 @@ bool is_significant(const Fit& without, const Fit& with, int more_unknowns) {
                           kSignificantSigmas * kSignificantSigmas;
 }
 
-/// Adds the time and iterations of a discarded solution.
-void add_effort(const SolverReport& tried, SolverReport& solver) {
-  solver.milliseconds += tried.milliseconds;
-  solver.iterations += tried.iterations;
-}
-
-/// Estimates the row delay by iterated parabola fits through the costs at three values.
+/// Estimates the row delay by iterated parabola fits through the costs at three values, unless the
+/// shutter is global or the joint model estimates it.
 Fit with_estimated_shutter(const Task& task, const Fit& given) {
+  if (task.options.shutter == Shutter::global || task.latent()) return given;
   Fit global = given;
   global.cost = given.solution.solver.final_cost;  // comparable with `refit`
   Fit best = global;
@@ -209,21 +213,13 @@ Fit with_estimated_shutter(const Task& task, const Fit& given) {
   return chosen;
 }
 
-Fit fitted(const Task& task, const PlaneMotion& start, RotationUnknowns rotations) {
-  // No choice depends on the cost if the joint model follows with the same unknowns.
-  const bool starts = task.latent() && task.window.rotations != RotationModel::bias;
-  const Fit global = solve(task, start, rotations, starts ? kStartRounds : kWeightRounds);
-  const bool rolling = task.options.shutter != Shutter::global && !task.latent();
-  return rolling ? with_estimated_shutter(task, global) : global;
-}
-
 /// Compares a fit with free rotations, in which the gyroscope no longer selects one of the plane's
 /// two decompositions, with the fit from its twin.
 Fit better_twin(const Task& task, Fit free) {
   auto other = twin_motion(task.window, free.solution.motion);
   if (!other) return free;
   if (!free.solution.motion.others.empty()) other->others = other_planes(task.window, *other);
-  Fit twin = fitted(task, *other, {RotationModel::free});
+  Fit twin = with_estimated_shutter(task, solve(task, *other, {RotationModel::free}));
   const bool better = converged(twin) && variance(free) > kWorthFreeRotations * variance(twin);
   Fit& chosen = better ? twin : free;
   add_effort((better ? free : twin).solution.solver, chosen.solution.solver);
@@ -240,20 +236,27 @@ struct Best {
 /// better.
 Best best_fit(const Task& task, const PlaneMotion& start) {
   const Window& window = task.window;
-  const bool noisy = window.rotations == RotationModel::bias && window.gyro->noise_density > 0;
-  Fit fit = fitted(task, start, {window.rotations, noisy});
-  const Eigen::Vector3d bias = fit.solution.motion.bias_rad_s;
-  if (fit.rotations.model != RotationModel::bias) return {std::move(fit), bias};
-  Fit free = fitted(task, fit.solution.motion, {RotationModel::free});
-  const int more = freedom(fit) - freedom(free);
-  const bool better =
-      is_significant(fit, free, more) && variance(fit) > kWorthFreeRotations * variance(free);
-  if (!better) {
-    add_effort(free.solution.solver, fit.solution.solver);
-    return {std::move(fit), bias};
+  const bool bias = window.rotations == RotationModel::bias;
+  // No choice depends on the cost if the joint model follows with the same unknowns.
+  const Rounds rounds{task.latent() && !bias ? 1 : Rounds{}.count, true};
+  const bool noisy = bias && window.gyro->noise_density > 0;
+  Fit fit = with_estimated_shutter(task, solve(task, start, {window.rotations, noisy}, rounds));
+  const Eigen::Vector3d bias_rad_s = fit.solution.motion.bias_rad_s;
+  if (!bias) return {std::move(fit), bias_rad_s};
+  Fit free = solve(task, fit.solution.motion, {RotationModel::free}, {1, true});
+  if (fit.row_delay_s != 0 || variance(fit) > kMayBeWorth * variance(free)) {
+    const SolverReport first = free.solution.solver;
+    free = with_estimated_shutter(task,
+                                  solve(task, free.solution.motion, {RotationModel::free}, rounds));
+    add_effort(first, free.solution.solver);
+    const int more = freedom(fit) - freedom(free);
+    if (is_significant(fit, free, more) && variance(fit) > kWorthFreeRotations * variance(free)) {
+      add_effort(fit.solution.solver, free.solution.solver);
+      return {better_twin(task, std::move(free)), bias_rad_s};
+    }
   }
-  add_effort(fit.solution.solver, free.solution.solver);
-  return {better_twin(task, std::move(free)), bias};
+  add_effort(free.solution.solver, fit.solution.solver);
+  return {std::move(fit), bias_rad_s};
 }
 
 /// Optimizes a start with the main plane, then with all planes if requested.

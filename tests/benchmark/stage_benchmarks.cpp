@@ -17,6 +17,7 @@
 #include "tests/benchmark/benchmarks.h"
 #include "tests/engine/inertial/simulated_motion.h"
 #include "tests/engine/simulated_room.h"
+#include "tests/engine/simulated_window.h"
 
 #include <algorithm>
 #include <numeric>
@@ -177,6 +178,36 @@ void solve(State& state, const Room& room) {
   state.counters["planes"] = static_cast<double>(result.planes.size());
 }
 
+/// A window's answer once it has rotations: planes, `gpo_joint`, uncertainty, verdict.
+struct Answer {
+  const char* name;
+  double reference_noise_px;
+  RotationModel rotations;
+};
+constexpr Answer kAnswers[] = {{"anchored tracks, gyroscope", 0, RotationModel::bias},
+                               {"anchored tracks, images only", 0, RotationModel::free},
+                               {"other tracks, gyroscope", 0.5, RotationModel::bias},
+                               {"other tracks, images only", 0.5, RotationModel::free}};
+
+/// 30 frames, 200 tracks, 0.5 px noise.
+void answer(State& state, const Answer& of) {
+  test::SimulationOptions options{.motion = test::Motion::orbit, .points = 200};
+  options.reference_noise_px = of.reference_noise_px;
+  if (of.rotations == RotationModel::bias)
+    options.gyro_bias_rad_s = options.gyro_noise_rad_s = 0.002;
+  const test::Simulation simulation = test::simulate(options);
+  const Method& method = find_method("gpo_joint");
+  Initialization result;
+  measure(state, thread_ms, [&] {
+    Window window = test::window_by_front_end(simulation, Inliers::planes);
+    window.rotations = of.rotations;
+    window.gyro = simulation.window.gyro;
+    result = assessed(method, window, method.initialize(window, {}, {}), Lens::typical);
+  });
+  if (!result.ok) state.SkipWithError(result.reason.c_str());
+  state.counters["iterations"] = result.solver.iterations;
+}
+
 void extract(State& state, const Room& room) {
   const Window window = window_of(room);
   measure(state, thread_ms, [&] { benchmark::DoNotOptimize(window_planes(window.points_px)); });
@@ -259,6 +290,7 @@ void evaluate(State& state, int jobs) {
 }
 
 std::string solving(const Room& room) { return fmt::format("gpo_joint, {}", room.name); }
+std::string answering(const Answer& of) { return fmt::format("answer, {}", of.name); }
 std::string extracting(const Room& room) { return fmt::format("extraction, {}", room.name); }
 std::string aligning(int seconds) { return fmt::format("alignment, {} s", seconds); }
 std::string evaluating(int jobs) { return fmt::format("evaluate/{}", jobs); }
@@ -273,6 +305,7 @@ void register_stage_benchmarks() {
     add(solving(room), [room](State& state) { solve(state, room); });
     add(extracting(room), [room](State& state) { extract(state, room); });
   }
+  for (const Answer& of : kAnswers) add(answering(of), [of](State& state) { answer(state, of); });
   for (const int seconds : kSeconds)
     add(aligning(seconds), [seconds](State& state) { align(state, seconds); });
   const auto stream = std::make_shared<Stream>(desk_stream());
@@ -304,6 +337,13 @@ void print_stage_tables(const Results& results) {
                whole_number(results.least(solving(room), "planes")),
                cell(results.ms(extracting(room))),
                cell(results.ms(solving(room)))});
+
+  fmt::print("\nThe default answer, 30 frames, 200 tracks:\n\n");
+  print_head("window | iterations | planes, `gpo_joint`, uncertainty, verdict [ms]");
+  for (const Answer& of : kAnswers)
+    print_row({of.name,
+               whole_number(results.least(answering(of), "iterations")),
+               cell(results.ms(answering(of)))});
 
   fmt::print("\nGravity and metric scale, 10 samples per frame:\n\n");
   print_head("frames | alignment [ms]");

@@ -110,8 +110,8 @@ void draw_window(Canvas& canvas, int frame) {
 void draw_busy_window(Canvas& canvas, int frame) {
   if (!canvas.state.results.study) {
     canvas.state.results.study = study_normals(*canvas.inspections[0]);
-    canvas.state.view.panes = {
-        find_pane("normals", side_panes()), find_pane("residuals", drawers()), false};
+    canvas.state.view.panes = {.side = find_pane("normals", side_panes()),
+                               .drawer = find_pane("residuals", drawers())};
   }
   draw_window(canvas, frame);
 }

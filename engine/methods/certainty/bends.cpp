@@ -157,6 +157,7 @@ FrameCurvature frame_curvature(const SolvedPlanes& solved,
   const auto tangents = normal_tangents(m.normalized());
   const FrameObservations& f = solved.observations.plane(plane)[frame];
   const FrameState state = frame_state(solved.observations, solved.motion, frame, plane);
+  const auto J = weighted_jacobian(f, state, Weighting::gradient);
   FrameCurvature sums;
   for (int k = 0; k < f.count; ++k) {
     const Transfer transfer = transfer_of(f, state, k);
@@ -164,12 +165,10 @@ FrameCurvature frame_curvature(const SolvedPlanes& solved,
     const Vector3d q(p.x() * p.x(), p.x() * p.y(), p.y() * p.y());
     const Vector2d by_height = transfer.d_normal() * m * m.norm();
     const Vector2d error = transfer.pixel - Vector2d(f.u[k], f.v[k]);
-    const auto weighted = [&](const Vector2d& r) -> Vector2d {
-      return f.weight.empty() ? Vector2d(f.mask[k] * f.mask[k] * r) : Vector2d(f.weight[k] * r);
-    };
-    sums.cross += gradient_of(f, state, k, by_height) * q.transpose();
-    sums.information += by_height.dot(weighted(by_height)) * q * q.transpose();
-    sums.gradient += by_height.dot(weighted(error)) * q;
+    const Vector2d weighted = weight_of(f, k) * by_height;
+    sums.cross += J.middleCols<2>(2 * k) * by_height * q.transpose();
+    sums.information += by_height.dot(weighted) * q * q.transpose();
+    sums.gradient += error.dot(weighted) * q;
   }
   return sums;
 }

@@ -6,7 +6,6 @@
 #include "engine/methods/plane/plane_weights.h"
 
 #include <algorithm>
-#include <array>
 #include <map>
 #include <span>
 
@@ -59,32 +58,6 @@ std::vector<int> blocks_of(const PlaneObservations& observations, int tracks) {
   return blocks;
 }
 
-/// Splits a frame's observations by block, each padded for the kernels.
-std::array<FrameObservations, kBlocks> split_into_blocks(const FrameObservations& f,
-                                                         const std::vector<int>& blocks) {
-  std::array<FrameObservations, kBlocks> parts;
-  const auto add = [&](FrameObservations& part, int o, double mask) {
-    part.ray_x.push_back(f.ray_x[o]);
-    part.ray_y.push_back(f.ray_y[o]);
-    part.u.push_back(f.u[o]);
-    part.v.push_back(f.v[o]);
-    part.mask.push_back(mask);
-  };
-  for (int o = 0; o < f.count; ++o) {
-    FrameObservations& part = parts[blocks[f.track[o]]];
-    add(part, o, f.mask[o]);
-    part.track.push_back(f.track[o]);
-    if (!f.weight.empty()) part.weight.push_back(f.weight[o]);
-    ++part.count;
-  }
-  for (FrameObservations& part : parts) {
-    if (part.count == 0) continue;
-    const int first = static_cast<int>(std::ranges::find(f.track, part.track[0]) - f.track.begin());
-    while (part.mask.size() % kKernelWidth != 0) add(part, first, 0);
-  }
-  return parts;
-}
-
 std::vector<Linearization> linearize_blocks(const SolvedPlanes& solved,
                                             const std::vector<int>& blocks,
                                             double sigma_px) {
@@ -96,9 +69,9 @@ std::vector<Linearization> linearize_blocks(const SolvedPlanes& solved,
   for (int k = 0; k < planes; ++k) {
     for (int i = 1; i < frames; ++i) {
       const FrameState state = frame_state(observations, motion, i, k);
-      const auto parts = split_into_blocks(observations.plane(k)[i], blocks);
-      for (int b = 0; b < kBlocks; ++b)
-        if (parts[b].count > 0) all[b].planes[k][i] = curved_normals(parts[b], state);
+      const FrameObservations& f = observations.plane(k)[i];
+      for (int o = 0; o < f.count; ++o)
+        add_curved(f, state, o, all[blocks[f.track[o]]].planes[k][i]);
     }
   }
   return all;

@@ -16,97 +16,45 @@
 namespace gpo {
 namespace {
 
+using Eigen::Index;
 using Eigen::Vector3d;
 
 constexpr int kLeastClusters = 5;  // least number of frames as clusters
 
 int gyro_size(RotationModel model) { return model == RotationModel::bias ? 3 : 0; }
 
-/// Displacement of the solution by one observation.
-struct Influence {
-  int frame = 0;
-  int track = 0;
-  Eigen::VectorXd shared;
-  OwnVector own;
-};
-
-/// Returns the influences of all observations, frame by frame.
-std::vector<Influence> influences(const Sandwich& sandwich) {
-  const auto& [solved, bread, inverse] = sandwich;
-  std::vector<Influence> all;
-  all.reserve(solved.observations.count());
-  for (int i = 1; i < solved.frame_count(); ++i) {
-    const Eliminated& frame = bread.frames[i];
-    const auto own = frame.inverse.rows();
-    for (int k = 0; k < std::ssize(bread.columns); ++k) {
-      const FrameObservations& f = solved.observations.plane(k)[i];
-      const FrameState state = frame_state(solved.observations, solved.motion, i, k);
-      const std::vector<int> at = bread.places(k);
-      for (int o = 0; o < f.count; ++o) {
-        const Eigen::Matrix<double, 8, 1> g =
-            gradient_of(f, state, o, transfer_error_px(f, state, o));
-        Eigen::VectorXd reduced = -(frame.gain.transpose() * g.tail(own));
-        reduced(at) += bread.columns[k][i].transpose() * g;
-        all.push_back({i, f.track[o], -(inverse * reduced), -(frame.inverse * g.tail(own))});
-      }
-    }
-  }
-  return all;
-}
-
 /// Returns the part of the spread that frames have in common, without that of single observations;
 /// zero with too few frames.
-SharedMatrix spread_by_frame(const std::vector<Influence>& all,
-                             int size,
-                             int frames,
-                             double degrees_of_freedom) {
-  SharedMatrix spread = SharedMatrix::Zero(size, size);
-  if (frames - 1 < kLeastClusters) return spread;
-  Eigen::MatrixXd sums = Eigen::MatrixXd::Zero(size, frames);
-  for (const Influence& one : all) {
-    sums.col(one.frame) += one.shared;
-    spread -= one.shared * one.shared.transpose();
-  }
-  spread += (frames - 1.0) / (frames - 2.0) * sums * sums.transpose();
-  return degrees_of_freedom * spread;
+SharedMatrix spread_by_frame(const Influences& all, int frames, double degrees_of_freedom) {
+  const Index size = all.shared.rows();
+  if (frames - 1 < kLeastClusters) return SharedMatrix::Zero(size, size);
+  Eigen::MatrixXd sums(size, frames);
+  for (int i = 0; i < frames; ++i)
+    sums.col(i) =
+        all.shared.middleCols(all.first[i], all.first[i + 1] - all.first[i]).rowwise().sum();
+  const SharedMatrix of_frames = (frames - 1.0) / (frames - 2.0) * sums * sums.transpose();
+  return degrees_of_freedom * (of_frames - all.shared * all.shared.transpose());
 }
 
 }  // namespace
 
-std::optional<FrameObservations> curvature_weights(const FrameObservations& f,
-                                                   const FrameState& state) {
-  if (!f.weight.empty()) return std::nullopt;
-  if (std::all_of(f.mask.begin(), f.mask.begin() + f.count, [](double m) { return m == 1; }))
-    return std::nullopt;
-  FrameObservations curved = f;
-  curved.weight.assign(f.count, Eigen::Matrix2d::Identity());
+Eigen::Matrix<double, 8, Eigen::Dynamic> weighted_jacobian(const FrameObservations& f,
+                                                           const FrameState& state,
+                                                           Weighting weighting) {
+  Eigen::Matrix<double, 8, Eigen::Dynamic> all(8, 2 * f.count);
   for (int k = 0; k < f.count; ++k) {
-    if (f.mask[k] == 1) continue;
-    const Eigen::Vector2d r = transfer_error_px(f, state, k).normalized();
-    curved.weight[k] = f.mask[k] * f.mask[k] * (Eigen::Matrix2d::Identity() - r * r.transpose());
+    const Transfer transfer = transfer_of(f, state, k);
+    const Eigen::Vector2d r = transfer.pixel - Eigen::Vector2d(f.u[k], f.v[k]);
+    all.middleCols<2>(2 * k).noalias() =
+        transfer.jacobian(state.tangents).transpose() *
+        (weighting == Weighting::gradient ? weight_of(f, k) : curvature_of(f, k, r));
   }
-  return curved;
-}
-
-Eigen::Matrix<double, 8, 1> gradient_of(const FrameObservations& f,
-                                        const FrameState& state,
-                                        int k,
-                                        const Eigen::Vector2d& r) {
-  const Eigen::Matrix<double, 2, 8> J = transfer_of(f, state, k).jacobian(state.tangents);
-  return f.weight.empty() ? (f.mask[k] * f.mask[k] * (J.transpose() * r)).eval()
-                          : (J.transpose() * (f.weight[k] * r)).eval();
+  return all;
 }
 
 int own_size(RotationModel model, const PlaneMotion& motion) {
   const bool noisy = model == RotationModel::bias && !motion.gyro_noise_rad.empty();
   return model == RotationModel::free || noisy ? 6 : 3;
-}
-
-FrameNormals curved_normals(const FrameObservations& f, const FrameState& state) {
-  FrameNormals normals = weighted_normals(f, state, Rotating::yes);
-  if (const auto of_loss = curvature_weights(f, state))
-    normals.JtJ = weighted_normals(*of_loss, state, Rotating::yes).JtJ;
-  return normals;
 }
 
 std::optional<Linearization> linearize(const SolvedPlanes& solved, RotationModel model) {
@@ -121,7 +69,7 @@ std::optional<Linearization> linearize(const SolvedPlanes& solved, RotationModel
       const FrameObservations& f = observations.plane(k)[i];
       const FrameState state = frame_state(observations, solved.motion, i, k);
       FrameNormals& normals = all.planes[k][i] = curved_normals(f, state);
-      huber = huber || curvature_weights(f, state);
+      huber = huber || has_huber_weights(f);
       if (!normals.in_front) return std::nullopt;
       cost += normals.cost;
     }
@@ -203,51 +151,85 @@ void Spread::add(const SolutionMove& move) {
   }
 }
 
-Spread spread_of(const Sandwich& sandwich, double degrees_of_freedom) {
+Influences influences_of(const Sandwich& sandwich) {
+  const auto& [solved, bread, inverse] = sandwich;
+  const auto own = bread.frames[1].inverse.rows();
+  const int count = solved.observations.count();
+  Influences all{.shared = Eigen::MatrixXd(inverse.rows(), count),
+                 .own = Eigen::MatrixXd(own, count),
+                 .track = {},
+                 .first = {0}};
+  for (int i = 1; i < solved.frame_count(); ++i) {
+    all.first.push_back(std::ssize(all.track));
+    const Eliminated& frame = bread.frames[i];
+    for (int k = 0; k < std::ssize(bread.columns); ++k) {
+      const FrameObservations& f = solved.observations.plane(k)[i];
+      const FrameState state = frame_state(solved.observations, solved.motion, i, k);
+      const auto J = weighted_jacobian(f, state, Weighting::gradient);
+      Eigen::Matrix<double, 8, Eigen::Dynamic> g(8, f.count);
+      for (int o = 0; o < f.count; ++o)
+        g.col(o).noalias() = J.middleCols<2>(2 * o) * transfer_error_px(f, state, o);
+      Eigen::MatrixXd reduced = frame.gain.transpose() * g.bottomRows(own);
+      reduced(bread.places(k), Eigen::all) -= bread.columns[k][i].transpose() * g;
+      const Index at = std::ssize(all.track);
+      all.shared.middleCols(at, f.count).noalias() = inverse * reduced;
+      all.own.middleCols(at, f.count).noalias() = -frame.inverse * g.bottomRows(own);
+      all.track.insert(all.track.end(), f.track.begin(), f.track.end());
+    }
+  }
+  all.first.push_back(count);
+  return all;
+}
+
+Spread spread_of(const Sandwich& sandwich, const Influences& all, double degrees_of_freedom) {
   const int frames = sandwich.solved.frame_count();
-  const int size = sandwich.bread.layout.size();
-  const auto own = sandwich.bread.frames[1].inverse.rows();
-  const std::vector<Influence> all = influences(sandwich);
+  const auto size = all.shared.rows(), own = all.own.rows();
   const int columns = sandwich.solved.window.track_count();
   Eigen::MatrixXd of_track = Eigen::MatrixXd::Zero(size, columns);
   std::vector<char> seen(columns, 0);
-  for (const Influence& one : all) {
-    of_track.col(one.track) += one.shared;
-    seen[one.track] = 1;
+  for (Index o = 0; o < all.shared.cols(); ++o) {
+    of_track.col(all.track[o]) += all.shared.col(o);
+    seen[all.track[o]] = 1;
   }
   const auto tracks = static_cast<double>(std::ranges::count(seen, 1));
   const double of_tracks = degrees_of_freedom * tracks / std::max(1.0, tracks - 1);
   Spread spread{of_tracks * of_track * of_track.transpose(),
                 std::vector<SharedMatrix>(frames, SharedMatrix::Zero(size, own)),
                 std::vector<OwnMatrix>(frames, OwnMatrix::Zero(own, own))};
-  for (const Influence& one : all) {
-    spread.cross[one.frame] += of_tracks * of_track.col(one.track) * one.own.transpose();
-    spread.own[one.frame] += of_tracks * one.own * one.own.transpose();
+  for (int i = 1; i < frames; ++i) {
+    const auto columns_of_frame = Eigen::seq(all.first[i], all.first[i + 1] - 1);
+    const Eigen::MatrixXd e = all.own(Eigen::all, columns_of_frame);
+    const std::span of_frame(all.track.data() + all.first[i], e.cols());
+    spread.cross[i] = of_tracks * of_track(Eigen::all, of_frame) * e.transpose();
+    spread.own[i] = of_tracks * e * e.transpose();
   }
   // The frames' part may only increase the spread: a decrease is noise of few frames.
-  const SharedMatrix both = spread.shared + spread_by_frame(all, size, frames, degrees_of_freedom);
+  const SharedMatrix both = spread.shared + spread_by_frame(all, frames, degrees_of_freedom);
   const auto of_normal = [](const SharedMatrix& x) { return x.topLeftCorner<2, 2>().trace(); };
   if (of_normal(both) > of_normal(spread.shared) && symmetric_eigen(both).values(0) >= 0)
     spread.shared = both;
   return spread;
 }
 
-std::vector<SolutionMove> moves_by_track(const Sandwich& sandwich, double degrees_of_freedom) {
-  const std::vector<Influence> all = influences(sandwich);
+std::vector<SolutionMove> moves_by_track(const Sandwich& sandwich,
+                                         const Influences& all,
+                                         double degrees_of_freedom) {
   std::vector<int> place(sandwich.solved.window.track_count(), -1);
   int tracks = 0;
-  for (const Influence& one : all)
-    if (place[one.track] < 0) place[one.track] = tracks++;
-  const OwnVector none = OwnVector::Zero(sandwich.bread.frames[1].inverse.rows());
+  for (const int track : all.track)
+    if (place[track] < 0) place[track] = tracks++;
+  const OwnVector none = OwnVector::Zero(all.own.rows());
+  const std::size_t frames = sandwich.solved.frame_count();
   std::vector<SolutionMove> moves(tracks,
-                                  {Eigen::VectorXd::Zero(sandwich.bread.layout.size()),
-                                   {sandwich.solved.motion.tau.size(), none}});
+                                  {Eigen::VectorXd::Zero(all.shared.rows()), {frames, none}});
   const double weight =
       std::sqrt(degrees_of_freedom * tracks / std::max(1.0, static_cast<double>(tracks) - 1));
-  for (const Influence& one : all) {
-    SolutionMove& move = moves[place[one.track]];
-    move.shared += weight * one.shared;
-    move.own[one.frame] += weight * one.own;
+  for (std::size_t i = 1; i < frames; ++i) {
+    for (Index o = all.first[i]; o < all.first[i + 1]; ++o) {
+      SolutionMove& move = moves[place[all.track[o]]];
+      move.shared += weight * all.shared.col(o);
+      move.own[i] += weight * all.own.col(o);
+    }
   }
   return moves;
 }

@@ -17,25 +17,18 @@ namespace gpo {
 /// Matrix over the unknowns that all frames share (`UnknownsLayout`).
 using SharedMatrix = Eigen::MatrixXd;
 /// Matrix over a frame's own unknowns: t, or (phi, t) with free rotations or gyroscope noise.
-using OwnMatrix = Eigen::MatrixXd;
-using OwnVector = Eigen::VectorXd;
+using OwnMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 6, 6>;
+using OwnVector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 6, 1>;
 
 /// Returns the number of a frame's own unknowns.
 int own_size(RotationModel model, const PlaneMotion& motion);
 
-/// Returns a frame's normal equations; with Huber weights JtJ is the second derivative of the loss.
-FrameNormals curved_normals(const FrameObservations& observations, const FrameState& state);
-
-/// Replaces Huber weights by the curvature of the loss: beyond its knee, k |r| has no curvature
-/// along the error and k / |r| across it, while the weights of the least squares, k / |r| in both
-/// directions, would be overconfident. nullopt if all weights are one or matrices.
-std::optional<FrameObservations> curvature_weights(const FrameObservations& f,
-                                                   const FrameState& state);
-/// Returns the weighted J^T r of an observation over (u, phi, t), for any error `r`.
-Eigen::Matrix<double, 8, 1> gradient_of(const FrameObservations& f,
-                                        const FrameState& state,
-                                        int k,
-                                        const Eigen::Vector2d& r);
+/// Which weights of Huber's loss multiply an error: those of its gradient, or its curvature.
+enum class Weighting { gradient, curvature };
+/// Returns the weighted J^T of a frame over (u, phi, t), two columns for each observation.
+Eigen::Matrix<double, 8, Eigen::Dynamic> weighted_jacobian(const FrameObservations& observations,
+                                                           const FrameState& state,
+                                                           Weighting weighting);
 
 struct Linearization {
   std::vector<std::vector<FrameNormals>> planes;  ///< main plane first; one per frame
@@ -85,6 +78,16 @@ struct SolutionMove {
 /// Returns the Gauss-Newton step of the shared unknowns from the solution, without the priors.
 Eigen::VectorXd newton_step(const Sandwich& sandwich, const Linearization& linearized);
 
+/// Displacements of the solution by all observations, one per column, frame by frame.
+struct Influences {
+  Eigen::MatrixXd shared;           ///< x, of the shared unknowns
+  Eigen::MatrixXd own;              ///< e, of the own unknowns of the observation's frame
+  std::vector<int> track;           ///< one per column
+  std::vector<Eigen::Index> first;  ///< first column of each frame, and the number of columns
+};
+
+Influences influences_of(const Sandwich& sandwich);
+
 /// Sums over clusters of observations of their displacements x and e of the solution.
 struct Spread {
   SharedMatrix shared;              ///< sum x x^T
@@ -96,10 +99,12 @@ struct Spread {
 
 /// Returns the spread with tracks as clusters and, for the shared unknowns, also frames; errors
 /// that all observations of a frame share go into its own unknowns.
-Spread spread_of(const Sandwich& sandwich, double degrees_of_freedom);
+Spread spread_of(const Sandwich& sandwich, const Influences& all, double degrees_of_freedom);
 
 /// Returns the displacement by each observed track, weighted so that the sums of squares are those
 /// of `spread_of`.
-std::vector<SolutionMove> moves_by_track(const Sandwich& sandwich, double degrees_of_freedom);
+std::vector<SolutionMove> moves_by_track(const Sandwich& sandwich,
+                                         const Influences& all,
+                                         double degrees_of_freedom);
 
 }  // namespace gpo

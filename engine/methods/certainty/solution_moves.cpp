@@ -11,20 +11,23 @@
 namespace gpo {
 namespace {
 
-/// Returns the change of a frame's errors by one standard deviation of a lens parameter [px].
-Eigen::Matrix2Xd lens_errors_px(std::span<const Eigen::Matrix2Xd> moves_px,
-                                const FrameObservations& f,
-                                const FrameState& state,
-                                int frame) {
-  FrameObservations moved = f;
-  Eigen::Matrix2Xd errors(2, f.count);
+/// Returns the change of a frame's errors by one standard deviation of each lens parameter, in
+/// columns [px].
+Eigen::MatrixXd lens_errors_px(LensMoves moves_px,
+                               const FrameObservations& f,
+                               const FrameState& state,
+                               int frame) {
+  Eigen::MatrixXd errors(2 * f.count, std::ssize(moves_px));
   for (int o = 0; o < f.count; ++o) {
-    const int j = f.track[o];
-    moved.ray_x[o] += moves_px[0](0, j) / state.fx;
-    moved.ray_y[o] += moves_px[0](1, j) / state.fy;
-    moved.u[o] += moves_px[frame](0, j);
-    moved.v[o] += moves_px[frame](1, j);
-    errors.col(o) = transfer_error_px(moved, state, o) - transfer_error_px(f, state, o);
+    const Eigen::Vector3d ray(f.ray_x[o], f.ray_y[o], 1);
+    const Eigen::Vector2d pixel = transfer_on_plane(state, ray).pixel;
+    for (Eigen::Index p = 0; p < errors.cols(); ++p) {
+      const auto move_px = moves_px[p][0].col(f.track[o]);
+      const Eigen::Vector3d moved =
+          ray + Eigen::Vector3d(move_px.x() / state.fx, move_px.y() / state.fy, 0);
+      errors.col(p).segment<2>(2 * o) =
+          transfer_on_plane(state, moved).pixel - pixel - moves_px[p][frame].col(f.track[o]);
+    }
   }
   return errors;
 }
@@ -92,27 +95,32 @@ void add_gyro_noise(const Sandwich& sandwich, Spread& spread) {
   }
 }
 
-SolutionMove move_by_lens(const Sandwich& sandwich, std::span<const Eigen::Matrix2Xd> moves_px) {
+std::vector<SolutionMove> moves_by_lens(const Sandwich& sandwich, LensMoves moves_px) {
   const auto& [solved, bread, inverse] = sandwich;
   const int frames = solved.frame_count();
   const auto own = bread.frames[1].inverse.rows();
-  Eigen::VectorXd reduced = Eigen::VectorXd::Zero(bread.layout.size());
-  std::vector<OwnVector> of_frame(frames, OwnVector::Zero(own));
+  const auto count = std::ssize(moves_px);
+  Eigen::MatrixXd reduced = Eigen::MatrixXd::Zero(bread.layout.size(), count);
+  std::vector<Eigen::MatrixXd> of_frame(frames, Eigen::MatrixXd::Zero(own, count));
   for (int i = 1; i < frames; ++i) {
     for (int k = 0; k < std::ssize(bread.columns); ++k) {
       const FrameObservations& f = solved.observations.plane(k)[i];
       const FrameState state = frame_state(solved.observations, solved.motion, i, k);
-      const Eigen::Matrix2Xd errors = lens_errors_px(moves_px, f, state, i);
-      const FrameObservations curved = curvature_weights(f, state).value_or(f);
-      Eigen::Matrix<double, 8, 1> g = Eigen::Matrix<double, 8, 1>::Zero();
-      for (int o = 0; o < f.count; ++o) g += gradient_of(curved, state, o, errors.col(o));
-      reduced(bread.places(k)) += bread.columns[k][i].transpose() * g;
-      of_frame[i] += g.tail(own);
+      const Eigen::MatrixXd g =
+          weighted_jacobian(f, state, Weighting::curvature) * lens_errors_px(moves_px, f, state, i);
+      reduced(bread.places(k), Eigen::all) += bread.columns[k][i].transpose() * g;
+      of_frame[i] += g.bottomRows(own);
     }
     reduced -= bread.frames[i].gain.transpose() * of_frame[i];
   }
-  for (int i = 1; i < frames; ++i) of_frame[i] = -(bread.frames[i].inverse * of_frame[i]).eval();
-  return {-(inverse * reduced), std::move(of_frame)};
+  const Eigen::MatrixXd shared = -inverse * reduced;
+  std::vector<SolutionMove> moves;
+  for (Eigen::Index p = 0; p < count; ++p) {
+    moves.push_back({shared.col(p), std::vector<OwnVector>(frames, OwnVector::Zero(own))});
+    for (int i = 1; i < frames; ++i)
+      moves.back().own[i] = -bread.frames[i].inverse * of_frame[i].col(p);
+  }
+  return moves;
 }
 
 Eigen::MatrixXd joint_covariance(const PlaneMotion& motion,

@@ -15,9 +15,12 @@ namespace gpo {
 /// empty if the gyroscope noise is not an unknown.
 std::vector<SolutionMove> moves_by_gyro_noise(const Sandwich& sandwich);
 
-/// Returns the displacement by one standard deviation of a lens parameter, which changes the points
-/// of each frame by `moves_px`.
-SolutionMove move_by_lens(const Sandwich& sandwich, std::span<const Eigen::Matrix2Xd> moves_px);
+/// Change of the points for one standard deviation of each lens parameter
+/// (`Window::lens_moves_px`).
+using LensMoves = std::span<const std::vector<Eigen::Matrix2Xd>>;
+
+/// Returns the displacements by one standard deviation of each lens parameter.
+std::vector<SolutionMove> moves_by_lens(const Sandwich& sandwich, LensMoves moves_px);
 
 /// Adds the spread of the gyroscope noise, a random walk, if it is an unknown (engine/method.md,
 /// eq. 14f).

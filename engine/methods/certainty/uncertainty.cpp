@@ -91,7 +91,8 @@ Matrix3d held_bias_covariance(const SolvedPlanes& solved,
   if (!inverse) return stated;
   const Sandwich sandwich{solved, bread, *inverse};
   const SharedMatrix covariance =
-      spread_of(sandwich, degrees_of_freedom).shared + prior_share(sandwich, linearized.sigma_px);
+      spread_of(sandwich, influences_of(sandwich), degrees_of_freedom).shared +
+      prior_share(sandwich, linearized.sigma_px);
   const Vector3d step = newton_step(sandwich, linearized).tail<3>();
   const Matrix3d moment = covariance.bottomRightCorner<3, 3>() + step * step.transpose();
   constexpr double kLeast = 0.038, kMost = 3.78;  // 1 and 99 % of chi-square of 3, by 3
@@ -112,8 +113,9 @@ SharedMatrix held_bias_share(const Sandwich& sandwich,
 
 void add_typical_lens(const Sandwich& sandwich, Uncertainty& result) {
   double variance = result.normal_covariance.trace();
-  for (const auto& moves_px : typical_lens_moves_px(sandwich.solved.window))
-    variance += move_by_lens(sandwich, moves_px).shared.head<2>().squaredNorm();
+  for (const SolutionMove& move :
+       moves_by_lens(sandwich, typical_lens_moves_px(sandwich.solved.window)))
+    variance += move.shared.head<2>().squaredNorm();
   result.typical_lens_sigma_deg = degrees(std::sqrt(variance));
 }
 
@@ -184,7 +186,8 @@ std::optional<Uncertainty> uncertainty_of(const SolvedPlanes& solved,
   const double residuals = 2.0 * observations.count();
   const double unknowns = inverse->rows() + own_size(model, motion) * (solved.frame_count() - 1.0);
   const double degrees_of_freedom = residuals / std::max(1.0, residuals - unknowns);
-  Spread spread = spread_of(sandwich, degrees_of_freedom);
+  const Influences influences = influences_of(sandwich);
+  Spread spread = spread_of(sandwich, influences, degrees_of_freedom);
   Uncertainty result;
   result.sigma_px = sigma_px;
   result.rotations = model;
@@ -198,15 +201,12 @@ std::optional<Uncertainty> uncertainty_of(const SolvedPlanes& solved,
   result.noise = marginals(motion, bread, spread);
   if (neighbors[0]) result.noise.normal += *neighbors[0];
   const double without_lens = spread.shared.topLeftCorner<2, 2>().trace();
-  std::vector<SolutionMove> moves_of_image;
-  for (const auto& moves_px : window.lens_moves_px) {
-    moves_of_image.push_back(move_by_lens(sandwich, moves_px));
-    spread.add(moves_of_image.back());
-  }
+  std::vector<SolutionMove> moves_of_image = moves_by_lens(sandwich, window.lens_moves_px);
+  for (const SolutionMove& move : moves_of_image) spread.add(move);
   const double of_lens = spread.shared.topLeftCorner<2, 2>().trace() - without_lens;
   if (!moves_of_image.empty()) result.lens_sigma_deg = degrees(std::sqrt(std::max(0.0, of_lens)));
   if (!window.row_delay_moves_px.empty()) {
-    moves_of_image.push_back(move_by_lens(sandwich, window.row_delay_moves_px));
+    moves_of_image.push_back(moves_by_lens(sandwich, {&window.row_delay_moves_px, 1})[0]);
     spread.add(moves_of_image.back());
   }
   add_gyro_noise(sandwich, spread);
@@ -218,7 +218,7 @@ std::optional<Uncertainty> uncertainty_of(const SolvedPlanes& solved,
   result.center_covariances = std::move(all.centers);
   for (const double v : all.distance_ratios) result.distance_ratio_sigmas.push_back(std::sqrt(v));
   if (centers == Centers::jointly) {
-    std::vector<SolutionMove> moves = moves_by_track(sandwich, degrees_of_freedom);
+    std::vector<SolutionMove> moves = moves_by_track(sandwich, influences, degrees_of_freedom);
     std::ranges::move(moves_by_gyro_noise(sandwich), std::back_inserter(moves));
     std::ranges::move(moves_of_image, std::back_inserter(moves));
     result.joint_covariance = joint_covariance(motion, bread, moves, spread.shared);

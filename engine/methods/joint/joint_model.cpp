@@ -2,13 +2,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/methods/joint/joint_model.h"
 
-#include "engine/methods/joint/self_product.h"
 #include "engine/methods/plane/plane_weights.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include <Eigen/Cholesky>
 #include <Eigen/Geometry>
 #include <Eigen/LU>
 
@@ -235,14 +233,18 @@ void Model::predict(const State& state, Predictions& all) const {
 
 Model::Shared Model::shared_by(const State& state, const Group& group) const {
   const int gyro = layout_.shared.gyro;
-  return {
+  Shared shared{
       .plane = group.plane,
       .frame = group.frame,
       .turns = gyro > 0 || layout_.own == 6 || layout_.velocity == 6,
       .at_stamp = frame_state(observations_, state.motion, group.frame, group.plane),
       .gyro = gyro > 0 ? gyro_columns(window_, state.motion, group.frame, gyro) : GyroColumns(3, 0),
       .velocity = state.velocities[group.frame],
-      .columns = columns_of(group.plane, group.frame)};
+      .columns = columns_of(group.plane, group.frame),
+      .in_panel = {}};
+  for (const Index at : shared.columns)
+    shared.in_panel.push_back(place_in_panel(at, 2 * std::ssize(tracks_)));
+  return shared;
 }
 
 Model::Rows Model::jacobian(const Prediction& p, const Track& track, const Shared& shared) const {
@@ -296,7 +298,10 @@ int Model::add_group(const Shared& shared,
   const std::vector<int>& columns = shared.columns;
   const auto width = static_cast<Index>(columns.size());
   const double frame_px = group.frame == 0 ? scales.reference_px : scales.sigma_px;
-  MatrixXd J = MatrixXd::Zero(width, 2 * std::ssize(group.tracks));
+  const bool by_track = all.by_track.size() > 0;
+  const Index observed = 2 * std::ssize(group.tracks);
+  Panels J(kPanel, panel_count(width) * observed);
+  J.rightCols(observed).setZero();
   int weighted = 0;
   for (Index o = 0; o < std::ssize(group.tracks); ++o) {
     const int j = group.tracks[o];
@@ -306,7 +311,10 @@ int Model::add_group(const Shared& shared,
     const Noise noise{sigma_px, std::pow(scales.sigma_px / sigma_px, 2), group.frame > 0};
     const Weights weights = weights_of(p.r, noise, options_.huber, curvature);
     all.cost += weights.cost;
-    if (!(weights.gradient > 0)) continue;
+    if (!(weights.gradient > 0)) {
+      for (Index p = 0; p < J.cols(); p += observed) J.middleCols<2>(p + 2 * o).setZero();
+      continue;
+    }
     all.curvature += 0.5 * weights.root.squaredNorm() / noise.scale;
     ++weighted;
     all.in_front = all.in_front && p.transfer.in_front();
@@ -317,84 +325,54 @@ int Model::add_group(const Shared& shared,
     all.V[j] += weighted_x.transpose() * weighted_x;
     all.v[j] += p.d_latent.transpose() * r;
     all.latent_weights[j] += weights.gradient * (p.d_latent.transpose() * p.d_latent);
-    J.middleCols<2>(2 * o).noalias() = rows.lazyProduct(weights.root);
+    const Matrix2d& root = weights.root;
     for (Index c = 0; c < width; ++c) {
-      const int at = columns[c];
-      all.by_track(at, j) += rows(c, 0) * r(0) + rows(c, 1) * r(1);
-      all.E(at, 2 * j) += rows(c, 0) * h(0, 0) + rows(c, 1) * h(1, 0);
-      all.E(at, 2 * j + 1) += rows(c, 0) * h(0, 1) + rows(c, 1) * h(1, 1);
+      const double x = rows(c, 0), y = rows(c, 1);
+      double* const in_J = &J.coeffRef(c % kPanel, c / kPanel * observed + 2 * o);
+      in_J[0] = x * root(0, 0) + y * root(1, 0);
+      in_J[kPanel] = x * root(0, 1) + y * root(1, 1);
+      double* const in_half = all.half.data() + shared.in_panel[c] + 2 * j * kPanel;
+      in_half[0] += x * h(0, 0) + y * h(1, 0);
+      in_half[kPanel] += x * h(0, 1) + y * h(1, 1);
+      const double gradient = x * r(0) + y * r(1);
+      all.gradient(columns[c]) += gradient;
+      if (by_track) all.by_track(columns[c], j) += gradient;
     }
   }
-  MatrixXd JJ = MatrixXd::Zero(width, width);
-  JJ.selfadjointView<Eigen::Lower>().rankUpdate(J);
-  JJ.triangularView<Eigen::StrictlyUpper>() = JJ.transpose();
-  for (Index a = 0; a < width; ++a)
-    for (Index b = 0; b < width; ++b) all.A(columns[b], columns[a]) += JJ(b, a);
+  MatrixXd minus_JJ = MatrixXd::Zero(width, width);
+  subtract_self_product(J, minus_JJ);
+  for (Index a = 0; a < width; ++a) {
+    for (Index b = a; b < width; ++b) {
+      const auto [column, row] = std::minmax(columns[a], columns[b]);
+      all.A(row, column) -= minus_JJ(b, a);
+    }
+  }
   return weighted;
 }
 
 Normals Model::linearize(const State& state,
                          const Predictions& predictions,
                          const Scales& scales,
-                         Curvature curvature) const {
+                         Curvature curvature,
+                         Normals all) const {
   const Index size = layout_.size();
   const Index count = std::ssize(tracks_);
-  Normals all{.A = MatrixXd::Zero(size, size),
-              .by_track = MatrixXd::Zero(size, count),
-              .E = MatrixXd::Zero(size, 2 * count),
-              .V = std::vector<Matrix2d>(count, Matrix2d::Zero()),
-              .v = std::vector<Vector2d>(count, Vector2d::Zero()),
-              .latent_weights = std::vector<Matrix2d>(count, Matrix2d::Zero())};
+  all.A.setZero(size, size);
+  all.gradient.setZero(size);
+  const bool lens = layout_.lens + layout_.lens_parameters > 0;
+  all.by_track.setZero(lens ? size : 0, lens ? count : 0);
+  all.half.setZero(kPanel, panel_count(size) * 2 * count);
+  for (auto* of_tracks : {&all.V, &all.latent_weights}) of_tracks->assign(count, Matrix2d::Zero());
+  all.v.assign(count, Vector2d::Zero());
+  all.cost = all.curvature = 0;
+  all.in_front = true;
   int weighted = 0;
   for (std::size_t g = 0; g < groups_.size(); ++g)
     weighted += add_group(
         shared_by(state, groups_[g]), groups_[g], predictions[g], {scales, curvature}, all);
   all.curvature /= std::max(1, weighted);
-  MatrixXd half(size, 2 * count);
-  for (Index j = 0; j < count; ++j) {
-    if (!(all.V[j].trace() > 0)) all.V[j].setIdentity();  // all observations are beyond the gate
-    const Eigen::LLT<Matrix2d> factor(all.V[j]);
-    const Matrix2d L = factor.matrixL();
-    auto first = half.col(2 * j), second = half.col(2 * j + 1);
-    first = all.E.col(2 * j) / L(0, 0);
-    second = (all.E.col(2 * j + 1) - L(1, 0) * first) / L(1, 1);
-    const Vector2d v = factor.matrixL().solve(all.v[j]);
-    all.by_track.col(j) -= v(0) * first + v(1) * second;
-  }
-  subtract_self_product(half, all.A);
-  all.A.triangularView<Eigen::StrictlyUpper>() = all.A.transpose();
+  eliminate_latent_positions(all);
   return all;
-}
-
-State Model::moved(const State& from, const VectorXd& x, const Normals& at) const {
-  State to = from;
-  PlaneMotion& motion = to.motion;
-  motion.normal = moved_normal(motion.normal, x.head<2>());
-  for (int k = 1; k < layout_.planes; ++k) {
-    Vector3d& m = motion.others[k - 1].m;
-    const Vector3d u_s = x.segment<3>(UnknownsLayout::of_plane(k));
-    const double length = m.norm();
-    m = length * std::exp(u_s(2)) * moved_normal(m / length, u_s.head<2>());
-  }
-  const Index gyro = layout_.shared.of_gyro();
-  if (layout_.shared.gyro > 0) motion.bias_rad_s += x.segment<3>(gyro);
-  if (layout_.shared.gyro == 4) motion.time_offset_s += x(gyro + 3);
-  if (layout_.row_delay > 0) to.row_delay_s += x(layout_.at_row_delay());
-  if (layout_.lens > 0) to.lens += x.segment<kLensTerms>(layout_.at_lens());
-  for (int i = 1; i < layout_.frames; ++i) {
-    motion.tau[i] += from.motion.R_wc[i] * x.segment<3>(layout_.at_translation(i));
-    if (layout_.own == 6) {
-      const Matrix3d turn = so3_exp(x.segment<3>(layout_.at_frame(i)));
-      if (options_.gyro_noise)
-        motion.gyro_noise_rad[i] = so3_log(so3_exp(motion.gyro_noise_rad[i]) * turn);
-      else
-        motion.R_wc[i] = motion.R_wc[i] * turn;
-    }
-    if (layout_.shared.gyro > 0) motion.R_wc[i] = gyro_rotation(window_, i, motion);
-  }
-  for (Index j = 0; j < std::ssize(tracks_); ++j)
-    to.shift_px.col(j) -= at.V[j].inverse() * (at.v[j] + at.E.middleCols<2>(2 * j).transpose() * x);
-  return to;
 }
 
 }  // namespace gpo::joint

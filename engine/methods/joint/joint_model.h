@@ -5,6 +5,7 @@
 // One least-squares problem over everything that is unknown in a window: planes, cameras,
 // gyroscope, row delay, positions of the tracks in the reference frame, errors of the lens and of
 // the surfaces (engine/method.md, "Joint model").
+#include "engine/methods/joint/self_product.h"
 #include "engine/methods/plane/plane_motion.h"
 #include "engine/methods/plane/smooth_path.h"
 #include "engine/window/window.h"
@@ -100,11 +101,12 @@ using Predictions = std::vector<std::vector<Prediction>>;
 
 /// Normal equations with the latent positions eliminated, without priors [px^2].
 struct Normals {
-  Eigen::MatrixXd A;               ///< over all unknowns of `JointLayout`
-  Eigen::MatrixXd by_track;        ///< gradient of each track's cost in a column
-  Eigen::MatrixXd E;               ///< unknowns x latent positions
+  Eigen::MatrixXd A;  ///< over all unknowns of `JointLayout`
+  Eigen::VectorXd gradient;
+  Eigen::MatrixXd by_track;        ///< each track's part of it in a column; empty without a lens
+  Panels half;                     ///< E L^-T: unknowns x latent positions, V = L L^T
   std::vector<Eigen::Matrix2d> V;  ///< over the latent position of each track
-  std::vector<Eigen::Vector2d> v;
+  std::vector<Eigen::Vector2d> v;  ///< gradient by the same, times L^-1
   std::vector<Eigen::Matrix2d> latent_weights;  ///< V with the weights of the least squares
   double cost = 0;
   double curvature = 0;  ///< the loss's mean over the observations; 1 for least squares
@@ -145,11 +147,13 @@ class Model {
   State first(const PlaneMotion& start) const;
   /// Sets the predictions of all observations.
   void predict(const State& state, Predictions& all) const;
+  /// `reused`: provides the memory.
   Normals linearize(const State& state,
                     const Predictions& predictions,
                     const Scales& scales,
-                    Curvature curvature) const;
-  Priors priors(const State& state, const Scales& scales) const;
+                    Curvature curvature,
+                    Normals reused = {}) const;
+  Priors priors(const State& state, const Scales& scales, Priors reused = {}) const;
   /// Moves all unknowns by `x` and the latent positions to their optimum; the velocities stay.
   State moved(const State& from, const Eigen::VectorXd& x, const Normals& at) const;
   /// Returns the noise of the poses with all unknowns of other frames fixed.
@@ -174,7 +178,8 @@ class Model {
     FrameState at_stamp;
     GyroColumns gyro;
     Velocity velocity;
-    std::vector<int> columns;  ///< their unknowns
+    std::vector<int> columns;            ///< their unknowns
+    std::vector<Eigen::Index> in_panel;  ///< their first elements in `Normals::half`
   };
   Shared shared_by(const State& state, const Group& group) const;
   /// Returns the derivatives of an error over the shared columns.
@@ -189,6 +194,7 @@ class Model {
                 std::span<const Prediction> predictions,
                 const Weighting& weighting,
                 Normals& all) const;
+  void eliminate_latent_positions(Normals& all) const;
 
   const Window& window_;
   std::vector<std::vector<Eigen::Matrix2Xd>> lens_moves_px_;

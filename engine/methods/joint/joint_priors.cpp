@@ -34,9 +34,11 @@ MatrixXd Model::walk_information(const PlaneMotion& start) const {
   return information;
 }
 
-Priors Model::priors(const State& state, const Scales& scales) const {
+Priors Model::priors(const State& state, const Scales& scales, Priors all) const {
   const Index size = layout_.size();
-  Priors all{MatrixXd::Zero(size, size), VectorXd::Zero(size)};
+  all.information.setZero(size, size);
+  all.gradient.setZero(size);
+  all.cost = 0;
   const double variance = scales.sigma_px * scales.sigma_px;
   const auto add = [&](Index at, double sigma, double error) {
     const double weight = variance / (sigma * sigma);

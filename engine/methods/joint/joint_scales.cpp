@@ -53,15 +53,14 @@ LensProblem lens_problem(const Model& model,
   for (Index k = 0; k < at.A.rows(); ++k)
     if (k < first || k >= first + count) others.push_back(k);
   const Priors priors = model.priors(state, scales);
-  const VectorXd gradient = at.by_track.rowwise().sum() + priors.gradient;
+  const VectorXd gradient = at.gradient + priors.gradient;
   const auto lens = Eigen::seqN(first, count);
   const MatrixXd A_on = at.A(others, lens);
   const MatrixXd gain =
       solve_symmetric(at.A(others, others) + priors.information(others, others), A_on);
   LensProblem problem;
   problem.H = at.A(lens, lens) - A_on.transpose() * gain;
-  problem.b = at.by_track(lens, Eigen::all).rowwise().sum() - gain.transpose() * gradient(others) -
-              problem.H * state.lens;
+  problem.b = at.gradient(lens) - gain.transpose() * gradient(others) - problem.H * state.lens;
   const MatrixXd of_track =
       at.by_track(lens, Eigen::all) - gain.transpose() * at.by_track(others, Eigen::all);
   problem.variance = std::max(scales.sigma_px * scales.sigma_px,

@@ -47,17 +47,23 @@ struct Iteration {
   Predictions predictions;  ///< at the state
   Scales scales;
   double most_cost = 0;
+  Normals normals = {};  ///< last linearization
   SolverReport solver = {};
   double last_step = 0;      ///< length over all unknowns
   double last_step_rad = 0;  ///< change of the normal
 };
 
-void add_to_trace(const Normals& normals, const Priors& priors, Iteration& at) {
-  const VectorXd gradient = normals.by_track.rowwise().sum() + priors.gradient;
-  at.solver.trace.push_back({normals.cost + priors.cost,
+void add_to_trace(const Priors& priors, Iteration& at) {
+  const VectorXd gradient = at.normals.gradient + priors.gradient;
+  at.solver.trace.push_back({at.normals.cost + priors.cost,
                              gradient.cwiseAbs().maxCoeff(),
                              at.last_step,
                              at.state.motion.normal});
+}
+
+void linearize(const Model& model, Curvature curvature, Iteration& at) {
+  at.normals =
+      model.linearize(at.state, at.predictions, at.scales, curvature, std::move(at.normals));
 }
 
 /// Iterates Newton steps and estimates of the noise; false if a step is not determined or the watch
@@ -68,15 +74,18 @@ bool converge(const Model& model, Iteration& at) {
   Curvature curvature = Curvature::of_weights;
   bool newton = model.options().huber;
   PathNoise noise;
+  const Normals& normals = at.normals;
+  Priors priors;
+  Eigen::LLT<Eigen::MatrixXd> factor;
   for (int k = 0; k < kMostIterations && !at.watch.stop_requested(); ++k) {
-    const Normals normals = model.linearize(at.state, at.predictions, at.scales, curvature);
-    const Priors priors = model.priors(at.state, at.scales);
-    const Eigen::LLT<Eigen::MatrixXd> factor(normals.A + priors.information);
+    linearize(model, curvature, at);
+    priors = model.priors(at.state, at.scales, std::move(priors));
+    factor.compute(normals.A + priors.information);
     if (!normals.in_front || factor.info() != Eigen::Success) return false;
-    const VectorXd gradient = normals.by_track.rowwise().sum() + priors.gradient;
+    const VectorXd gradient = normals.gradient + priors.gradient;
     const VectorXd x = -factor.solve(gradient);
     if (!x.allFinite()) return false;
-    add_to_trace(normals, priors, at);
+    add_to_trace(priors, at);
     constexpr double kMargin = 20;  // times the expected decrease, -gradient.x / 2
     if (k > 1 && normals.cost + priors.cost + kMargin / 2 * gradient.dot(x) > at.most_cost)
       return false;
@@ -139,24 +148,17 @@ std::optional<Solution> solve(const Window& window,
   if (!converge(model, at)) return std::nullopt;
   unknown.lens_residual = true;
   const Model with_lens = model.with(unknown);
-  find_lens_residual(
-      with_lens,
-      at.state,
-      with_lens.linearize(at.state, at.predictions, at.scales, Curvature::of_weights),
-      at.scales);
+  linearize(with_lens, Curvature::of_weights, at);
+  find_lens_residual(with_lens, at.state, at.normals, at.scales);
   if (at.scales.lens_px > 0 && !converge(with_lens, at)) return std::nullopt;
   unknown.lens_parameters = true;
   unknown.velocity = unknown_velocity(at, std::ssize(model.tracks()), all.K);
   const Model whole = model.with(unknown);
-  const Normals normals =
-      whole.linearize(at.state,
-                      at.predictions,
-                      at.scales,
-                      options.huber ? Curvature::of_loss : Curvature::of_weights);
-  if (!normals.in_front) return std::nullopt;
+  linearize(whole, options.huber ? Curvature::of_loss : Curvature::of_weights, at);
+  if (!at.normals.in_front) return std::nullopt;
   const int tracks = static_cast<int>(model.tracks().size());
   SolverReport& solver = at.solver;
-  add_to_trace(normals, whole.priors(at.state, at.scales), at);
+  add_to_trace(whole.priors(at.state, at.scales), at);
   solver.initial_cost = solver.trace.front().cost;
   solver.final_cost = solver.trace.back().cost;
   solver.unknowns = with_lens.layout().size() + 2 * tracks;
@@ -167,7 +169,7 @@ std::optional<Solution> solve(const Window& window,
                     .solver = std::move(solver),
                     .scales = at.scales,
                     .row_delay_s = at.state.row_delay_s,
-                    .uncertainty = uncertainty_of(whole, at.state, normals, at.scales)};
+                    .uncertainty = uncertainty_of(whole, at.state, at.normals, at.scales)};
   if (!solution.uncertainty.joint_covariance.allFinite()) return std::nullopt;
   const double settled_rad =
       kSettledSigmas * std::sqrt(solution.uncertainty.normal_covariance.trace());

@@ -134,14 +134,17 @@ MatrixXd spread_of_priors(const MatrixXd& prior, const MatrixXd& gain) {
 /// Returns the Cramér-Rao bound of the normal [deg] with unknown normal, translations and, on
 /// request, bias.
 std::optional<double> bound_deg(const JointLayout& layout,
-                                const MatrixXd& information,
-                                bool bias,
+                                const Normals& at,
+                                const MatrixXd* prior_of_bias,
                                 double sigma_px) {
   std::vector<Index> unknown{0, 1};
-  for (int k = 0; bias && k < 3; ++k) unknown.push_back(layout.shared.of_gyro() + k);
+  for (int k = 0; prior_of_bias && k < 3; ++k) unknown.push_back(layout.shared.of_gyro() + k);
   for (int i = 1; i < layout.frames; ++i)
     for (int axis = 0; axis < 3; ++axis) unknown.push_back(layout.at_translation(i) + axis);
-  const Eigen::LLT<MatrixXd> factor(information(unknown, unknown));
+  // The robust loss uses less of the information than there is.
+  MatrixXd information = at.A(unknown, unknown) / at.curvature;
+  if (prior_of_bias) information += (*prior_of_bias)(unknown, unknown);
+  const Eigen::LLT<MatrixXd> factor(information);
   if (factor.info() != Eigen::Success) return std::nullopt;
   const MatrixXd columns = factor.solve(MatrixXd::Identity(std::ssize(unknown), 2));
   return degrees(sigma_px * std::sqrt(columns.topRows<2>().trace()));
@@ -217,10 +220,10 @@ Uncertainty uncertainty_of(const Model& model,
   const JointLayout& layout = model.layout();
   const double variance = scales.sigma_px * scales.sigma_px;
   const MatrixXd prior = model.priors(state, scales).information;
-  const MatrixXd information = at.A + prior;
   const std::vector<Index> wanted = unknowns_of_results(layout);
-  const auto all = MatrixXd::Identity(layout.size(), layout.size());
-  const MatrixXd gain = Eigen::LLT<MatrixXd>(information).solve(MatrixXd(all(Eigen::all, wanted)));
+  MatrixXd gain = MatrixXd::Zero(layout.size(), std::ssize(wanted));
+  for (Index k = 0; k < gain.cols(); ++k) gain(wanted[k], k) = 1;
+  Eigen::LLT<MatrixXd>(at.A + prior).solveInPlace(gain);
   const auto tracks = static_cast<double>(model.tracks().size());
   const double residuals = 2.0 * model.observation_count();
   const double unknowns = layout.at_velocity(0) - layout.lens - layout.lens_parameters;
@@ -248,14 +251,12 @@ Uncertainty uncertainty_of(const Model& model,
       model, state.motion, moves_of_poses(model, state.motion, covariance).transpose());
   add_centers(layout, state.motion, result);
   const Index gyro = layout.shared.of_gyro();
-  // The robust loss uses less of the information than there is.
-  const MatrixXd whole = at.A / at.curvature;
   if (layout.shared.gyro > 0) {
     result.joint_bias_rows = 3;
     result.bias_covariance = covariance.block<3, 3>(gyro, gyro);
-    result.bound_unknown_bias_deg = bound_deg(layout, whole + prior, true, scales.sigma_px);
+    result.bound_unknown_bias_deg = bound_deg(layout, at, &prior, scales.sigma_px);
   }
-  result.bound_known_rotations_deg = bound_deg(layout, whole, false, scales.sigma_px);
+  result.bound_known_rotations_deg = bound_deg(layout, at, nullptr, scales.sigma_px);
   if (layout.row_delay > 0)
     result.row_delay_sigma_s = std::sqrt(covariance(layout.at_row_delay(), layout.at_row_delay()));
   if (wider > 1) result.neighbors_sigma_deg = degrees(std::sqrt((wider - 1) * of_normal));

@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <cstring>
-#include <vector>
 
 namespace gpo::joint {
 namespace {
@@ -14,30 +13,17 @@ namespace {
 using Eigen::Index;
 using Eigen::MatrixXd;
 using FourDoubles = double __attribute__((vector_size(32)));
-constexpr Index kPanel = 2 * 4;  // rows at a time, in two registers
-constexpr Index kTile = 4;       // columns at a time
+constexpr Index kTile = 4;  // columns at a time; the rows of a panel are in two registers
 
-/// Returns the panels of rows one after the other, the last one padded by zeros.
-std::vector<double> packed(const MatrixXd& H) {
-  const Index panels = (H.rows() + kPanel - 1) / kPanel;
-  std::vector<double> all(panels * kPanel * H.cols());
-  for (Index p = 0; p < panels; ++p) {
-    const Index rows = std::min(kPanel, H.rows() - p * kPanel);
-    for (Index k = 0; k < H.cols(); ++k)
-      std::copy_n(&H(p * kPanel, k), rows, &all[(p * H.cols() + k) * kPanel]);
-  }
-  return all;
-}
-
-GPO_AVX2_FMA void subtract_avx2_fma(const MatrixXd& H, MatrixXd& A) {
-  const std::vector<double> all = packed(H);
-  const Index n = H.rows();
+[[gnu::always_inline]] inline void subtract(const Panels& H, MatrixXd& A) {
+  const Index n = A.rows();
+  const Index columns = H.cols() / panel_count(n);
   for (Index first = 0; first < n; first += kPanel) {
     for (Index column = 0; column < std::min(first + kPanel, n); column += kTile) {
       FourDoubles upper[kTile] = {}, lower[kTile] = {};
-      const double* rows = &all[first * H.cols()];
-      const double* others = &all[column / kPanel * kPanel * H.cols() + column % kPanel];
-      for (Index k = 0; k < H.cols(); ++k, rows += kPanel, others += kPanel) {
+      const double* rows = H.data() + first * columns;
+      const double* others = H.data() + place_in_panel(column, columns);
+      for (Index k = 0; k < columns; ++k, rows += kPanel, others += kPanel) {
         FourDoubles a, b;
         std::memcpy(&a, rows, sizeof(a));
         std::memcpy(&b, rows + 4, sizeof(b));
@@ -54,13 +40,15 @@ GPO_AVX2_FMA void subtract_avx2_fma(const MatrixXd& H, MatrixXd& A) {
   }
 }
 
+GPO_AVX2_FMA void subtract_avx2_fma(const Panels& H, MatrixXd& A) { subtract(H, A); }
+
 }  // namespace
 
-void subtract_self_product(const MatrixXd& H, MatrixXd& A) {
+void subtract_self_product(const Panels& H, MatrixXd& A) {
   if (has_avx2_fma())
     subtract_avx2_fma(H, A);
   else
-    A.selfadjointView<Eigen::Lower>().rankUpdate(H, -1);
+    subtract(H, A);
 }
 
 }  // namespace gpo::joint

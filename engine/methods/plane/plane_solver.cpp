@@ -12,7 +12,6 @@
 namespace gpo {
 namespace {
 
-constexpr int kMostIterations = 300;
 constexpr int kUsualIterations = 16;
 constexpr double kSettled = 1e-10;      // length of a step [rad, plane distances, rad/s]
 constexpr double kRounding = 1e-12;     // relative change of the cost below rounding errors
@@ -21,35 +20,40 @@ constexpr double kFirstDamping = 1e-4;  // relative to the diagonal, if Gauss-Ne
 constexpr double kLargestDamping = 1e12;
 
 template <class S>
-PlaneSolution minimize(const PlaneTask& task, const PlaneMotion& start, const Watch& watch) {
+PlaneSolution minimize(const PlaneTask& task,
+                       const PlaneMotion& start,
+                       const Watch& watch,
+                       int most_steps) {
   const PlaneProblem<S> problem(task);
   PlaneSolution solution{start, {}};
   SolverReport& report = solution.solver;
   report.unknowns = problem.unknown_count();
   report.termination = Termination::no_convergence;
-  Linearized at = problem.linearize(start);
+  Linearized<S> at, there;
+  problem.linearize(start, at);
   report.initial_cost = at.cost;
   if (!at.in_front || !std::isfinite(at.cost)) report.termination = Termination::failure;
   report.trace.reserve(kUsualIterations);
-  report.trace.push_back({at.cost, problem.gradient(at, start), 0, start.normal});
+  report.trace.push_back({at.cost, problem.gradient(at), 0, start.normal});
   double damping = 0;
-  int hidden_steps = 0;
-  while (report.termination == Termination::no_convergence && report.iterations < kMostIterations &&
-         !watch.stop_requested()) {
+  int hidden_steps = 0, taken = 0;
+  while (report.termination == Termination::no_convergence && taken < most_steps &&
+         report.iterations < kMostSteps && !watch.stop_requested()) {
     ++report.iterations;
-    const auto step = problem.step(at, solution.motion, damping);
-    const PlaneMotion moved = problem.moved(solution.motion, step);
-    Linearized there = problem.linearize(moved);
+    const auto step = problem.step(at, damping);
+    PlaneMotion moved = problem.moved(solution.motion, step);
+    problem.linearize(moved, there);
     // Close to the minimum the cost's rounding errors exceed its decrease: accept the step.
     const bool hidden = std::abs(step.decrease) < kRounding * at.cost;
     const bool better = there.in_front && (there.cost <= at.cost || hidden);
     hidden_steps += hidden ? 1 : 0;
     const bool settled = step.length < kSettled || hidden_steps == kMostHiddenSteps;
     if (better) {
-      solution.motion = moved;
-      at = std::move(there);
+      ++taken;
+      solution.motion = std::move(moved);
+      std::swap(at, there);
       damping = damping > kFirstDamping ? damping / 10 : 0;
-      report.trace.push_back({at.cost, problem.gradient(at, moved), step.norm, moved.normal});
+      report.trace.push_back({at.cost, problem.gradient(at), step.norm, solution.motion.normal});
     } else {
       damping = std::max(10 * damping, kFirstDamping);
       report.trace.push_back(report.trace.back());
@@ -78,7 +82,10 @@ PlaneMotion with_noise_unknowns(PlaneMotion start, const PlaneUnknowns& unknowns
   return start;
 }
 
-PlaneSolution solve_plane(const PlaneTask& task, const PlaneMotion& start, const Watch& watch) {
+PlaneSolution solve_plane(const PlaneTask& task,
+                          const PlaneMotion& start,
+                          const Watch& watch,
+                          int most_steps) {
   const auto begin = std::chrono::steady_clock::now();
   const PlaneUnknowns& unknowns = task.unknowns;
   const bool free = unknowns.rotations == RotationModel::free || unknowns.gyro_noise;
@@ -87,7 +94,7 @@ PlaneSolution solve_plane(const PlaneTask& task, const PlaneMotion& start, const
   const auto solve = normal_only ? (free ? minimize<FreeRotations> : minimize<KnownRotations>)
                      : free      ? minimize<AnySharedFree>
                                  : minimize<AnyShared>;
-  PlaneSolution solution = solve(task, with_noise_unknowns(start, unknowns), watch);
+  PlaneSolution solution = solve(task, with_noise_unknowns(start, unknowns), watch, most_steps);
   solution.solver.residuals = residual_count(task);
   solution.solver.milliseconds =
       std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count();

@@ -47,6 +47,12 @@ void reweigh_frame(const FrameState& state,
   }
 }
 
+FrameNormals sum_of_curved(const FrameObservations& f, const FrameState& state) {
+  FrameNormals normals{.in_front = true};
+  for (int k = 0; k < f.count; ++k) add_curved(f, state, k, normals);
+  return normals;
+}
+
 }  // namespace
 
 Transfer transfer_of(const FrameObservations& f, const FrameState& state, int k) {
@@ -92,19 +98,38 @@ double loss_beyond_weights(const PlaneMotion& motion,
 FrameNormals weighted_normals(const FrameObservations& f,
                               const FrameState& state,
                               Rotating rotating) {
-  if (f.weight.empty()) return frame_normals(f, state, rotating);
-  FrameNormals normals;
-  normals.in_front = true;
-  for (int k = 0; k < f.count; ++k) {
-    const Transfer transfer = transfer_of(f, state, k);
-    const Eigen::Matrix<double, 2, 8> J = transfer.jacobian(state.tangents);
-    const Vector2d r = transfer.pixel - Vector2d(f.u[k], f.v[k]);
-    normals.JtJ += J.transpose() * f.weight[k] * J;
-    normals.Jtr += J.transpose() * f.weight[k] * r;
-    normals.cost += 0.5 * r.dot(f.weight[k] * r);
-    normals.in_front = normals.in_front && transfer.in_front();
-  }
-  return normals;
+  return f.weight.empty() ? frame_normals(f, state, rotating) : sum_of_curved(f, state);
+}
+
+Matrix2d weight_of(const FrameObservations& f, int k) {
+  return f.weight.empty() ? Matrix2d(f.mask[k] * f.mask[k] * Matrix2d::Identity()) : f.weight[k];
+}
+
+Matrix2d curvature_of(const FrameObservations& f, int k, const Vector2d& r) {
+  if (!f.weight.empty() || f.mask[k] == 1) return weight_of(f, k);
+  const Vector2d along = r.normalized();
+  return f.mask[k] * f.mask[k] * (Matrix2d::Identity() - along * along.transpose());
+}
+
+bool has_huber_weights(const FrameObservations& f) {
+  return f.weight.empty() &&
+         std::any_of(f.mask.begin(), f.mask.begin() + f.count, [](double m) { return m != 1; });
+}
+
+void add_curved(const FrameObservations& f, const FrameState& state, int k, FrameNormals& sum) {
+  const Transfer transfer = transfer_of(f, state, k);
+  const Eigen::Matrix<double, 2, 8> J = transfer.jacobian(state.tangents);
+  const Vector2d r = transfer.pixel - Vector2d(f.u[k], f.v[k]);
+  const Vector2d weighted = weight_of(f, k) * r;
+  const Eigen::Matrix<double, 8, 2> JtC = J.transpose() * curvature_of(f, k, r);
+  sum.JtJ.noalias() += JtC * J;
+  sum.Jtr.noalias() += J.transpose() * weighted;
+  sum.cost += 0.5 * r.dot(weighted);
+  sum.in_front = sum.in_front && transfer.in_front();
+}
+
+FrameNormals curved_normals(const FrameObservations& f, const FrameState& state) {
+  return has_huber_weights(f) ? sum_of_curved(f, state) : weighted_normals(f, state, Rotating::yes);
 }
 
 }  // namespace gpo

@@ -39,4 +39,17 @@ FrameNormals weighted_normals(const FrameObservations& f,
                               const FrameState& state,
                               Rotating rotating);
 
+/// Returns the weight matrix of an observation's gradient.
+Eigen::Matrix2d weight_of(const FrameObservations& f, int k);
+/// Returns the second derivative of an observation's loss over its error `r`. Beyond the knee of
+/// Huber's loss, k |r| has no curvature along the error and k / |r| across it, while the weights of
+/// the least squares, k / |r| in both directions, would be overconfident.
+Eigen::Matrix2d curvature_of(const FrameObservations& f, int k, const Eigen::Vector2d& r);
+/// Returns true if some observation is beyond the knee of Huber's loss.
+bool has_huber_weights(const FrameObservations& f);
+/// Adds an observation's normal equations; JtJ is the second derivative of its loss.
+void add_curved(const FrameObservations& f, const FrameState& state, int k, FrameNormals& sum);
+/// Returns the sum of these over all observations of a frame.
+FrameNormals curved_normals(const FrameObservations& f, const FrameState& state);
+
 }  // namespace gpo

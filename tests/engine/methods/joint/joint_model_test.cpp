@@ -61,7 +61,7 @@ TEST_P(JointGradient, EqualsDerivativeOfCost) {
   joint::Normals at = linearized(state);
   state = model.moved(state, none, at);
   at = linearized(state);
-  const VectorXd gradient = at.by_track.rowwise().sum() + model.priors(state, scales).gradient;
+  const VectorXd gradient = at.gradient + model.priors(state, scales).gradient;
   const auto cost = [&](VectorXd::Index k, double step) {
     const joint::State there = model.moved(state, step * VectorXd::Unit(none.size(), k), at);
     return linearized(there).cost + model.priors(there, scales).cost;
@@ -96,8 +96,7 @@ double settled_cost(const Window& window, const PlaneMotion& motion, VectorXd& g
     at = model.linearize(state, predictions, scales, joint::Curvature::of_weights);
     state = model.moved(state, VectorXd::Zero(model.layout().size()), at);
   }
-  gradient = at.by_track.rowwise().sum().segment(model.layout().at_parameters(),
-                                                 model.layout().lens_parameters);
+  gradient = at.gradient.segment(model.layout().at_parameters(), model.layout().lens_parameters);
   return at.cost;
 }
 
