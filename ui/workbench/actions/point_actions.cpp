@@ -132,7 +132,7 @@ void add_point_actions(std::vector<Action>& table) {
             "Set the scale from two points",
             "Sets the metric scale by the distance [m] of two points: the picked ones (Alt+click), "
             "the two selected tracks, or pixels of the current frame; off: not from points"},
-           "LENGTH|off [X1 [Y1 [X2 [Y2]]]]",
+           "METERS|off [X1 [Y1 [X2 [Y2]]]]",
            set_scale);
   menu.add(
       {"set-origin",
