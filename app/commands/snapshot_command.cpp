@@ -218,7 +218,10 @@ RunCommand add_snapshot(CLI::App& app) {
       ->excludes(script);
   command.add_option("--output", to->output, "PNG file to write")->excludes(script);
   command.add_option(
-      "--frame", to->drawn.frame, "Frame of the recording to draw; default: the window's last");
+      "--frame",
+      to->drawn.frame,
+      "Frame of the recording to draw, after the window with an extrapolated camera; default: the "
+      "window's last");
   command.add_option(
       "--methods",
       to->drawn.methods,

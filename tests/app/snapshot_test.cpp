@@ -135,7 +135,7 @@ DrawnView drawn_frame(const std::string& view, int frame, int frames) {
 }
 
 TEST(Snapshot, FramesAfterTheWindowHaveExtrapolatedCameras) {
-  const auto dashes = [](const cv::Mat& image) {  // of the frame around an extrapolated image
+  const auto dashes = [](const cv::Mat& image) {  // which frame an extrapolated image
     cv::Mat border;
     cv::inRange(image.rowRange(1, 4), cv::Scalar(204, 233, 245), cv::Scalar(224, 253, 255), border);
     return cv::countNonZero(border);

@@ -5,8 +5,8 @@
 # A stranger's first steps in the real window, by mouse and keyboard, with what the window itself offers: a video is
 # dropped, its camera calibrated, the scale set from two points, cubes put on floor and wall, and the result exported.
 #   ../with_display.sh 1280x720 stranger_window.sh PROGRAM
-# Run in an empty folder. The program renders the video from stranger.yaml. Leaves step-1.png to step-6.png and
-# room.glb; prints a failed expectation and exits with 1.
+# Run in an empty folder. The program renders the video from stranger.yaml. Leaves step-1-dropped.png to
+# step-5-exporting.png and room.glb; prints a failed expectation and exits with 1.
 set -u
 program=$1
 here=$(dirname "$0")
@@ -53,5 +53,41 @@ step reference-frame
 pick() { mouse_to "$1" "$2"; sleep 0.3; xdotool keydown alt click 1 keyup alt; sleep 0.5; }
 pick 459 476
 pick 832 418
-click 700 480 3
+mouse_to 700 480
+step picked
+xdotool click 3
+until_true "the menu of the picked points" other_than picked.png
 step step-3-two-points
+click 764 579  # Set the scale from two points ...
+until_true "a field for the length" other_than step-3-two-points.png
+xdotool type --delay 30 1.7
+xdotool key Return
+step scaled
+
+# 4. Each plane has a cube, now with its size in meters. The mouse drags them along floor and wall.
+drag 505 198 640 200
+drag 596 336 650 400
+mouse_to 1000 540
+step step-4-cubes
+
+# 5. The menu File exports a scene that other programs open.
+click 27 13
+mouse_to 110 347
+step export-menu
+click 324 472  # Export: glTF scene ...
+until_true "a field for the file" other_than export-menu.png
+xdotool type --delay 30 room.glb
+step step-5-exporting
+xdotool key Return
+until_true "the scene to be written" test -s room.glb
+quit || exit 1
+
+# The scene has cubes and is in meters.
+python3 - room.glb <<'END' || exit 1
+import json, struct, sys
+data = open(sys.argv[1], "rb").read()
+scene = json.loads(data[20:20 + struct.unpack("<I", data[12:16])[0]])
+names = " ".join(node.get("name", "") for node in scene["nodes"])
+if "cube" not in names or scene["asset"].get("extras", {}).get("unit") != "meter":
+    sys.exit(f"expected: cubes in meters in room.glb, not {names}, {scene['asset']}")
+END

@@ -323,7 +323,7 @@ std::vector<ResultGroup> result_groups(const Inspection* inspection, bool timing
                 {"Normal", "Distance ratio", "Bound, known rotations", "Bound, unknown bias"}),
             unknown_group(kTimeTitle,
                           {"Track", "RANSAC", "Rotations", "Initialize", "Solver", "Total"})};
-  // What matters most first: a window of 1280x720 shows only the first rows without scrolling.
+  // The most important rows come first: a window of 1280x720 shows no others without scrolling.
   std::vector<ResultGroup> groups{metrics_group(*inspection),
                                   result_group(*inspection),
                                   verdict_group(*inspection),

@@ -17,7 +17,7 @@ struct ContextSubject {
   int plane = 0;                           ///< number in the window, counts from 0
   std::optional<Vector3d> ray = {};        ///< from the reference camera to the plane's point
   std::string why_not_there = {};          ///< why there is no `ray`
-  Vector2d raw_px = Vector2d::Zero();      ///< of a point
+  Vector2d raw_px = Vector2d::Zero();      ///< the pixel of a point
   int frame = 0;                           ///< counts in the recording
   std::string value = {}, uncertain = {};  ///< texts of a number; `uncertain` with its uncertainty
 };

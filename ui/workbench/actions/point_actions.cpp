@@ -89,6 +89,9 @@ void set_scale(State& state, const Arguments& arguments) {
     settings = with_setting(std::move(settings), "scale_points", point_pair(state, arguments, 1));
   }
   choose_points(state, std::move(settings));
+  say(state,
+      off ? "the scale is not from points; Ctrl+Z undoes it"
+          : "all lengths are in meters by these points; Ctrl+Z undoes it");
 }
 
 void set_origin(State& state, const Arguments& arguments) {
