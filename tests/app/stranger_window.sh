@@ -38,6 +38,7 @@ step empty
 /usr/bin/python3 "$here/drop_file.py" "$window" room.mp4 || fail "the window to accept the video"
 until_true "the video to be opened" opened "room.mp4 – the camera is a guess – "
 step step-1-dropped
+key --window "$window" Escape  # closes the card of the tour
 
 # 2. The banner says that the window failed, and offers a calibration. Its report asks for a yes.
 click 730 47
