@@ -4,12 +4,9 @@
 #include "app/recordings/recordings.h"
 #include "app/terminal/terminal.h"
 #include "engine/base/error.h"
-#include "engine/experiment/summary.h"
 #include "engine/files/output_file.h"
 #include "engine/files/text_file.h"
-#include "engine/methods/methods.h"
 #include "engine/recording/images/images.h"
-#include "ui/views/report/report.h"
 #include "ui/views/snapshot.h"
 #include "ui/workbench_window.h"
 
