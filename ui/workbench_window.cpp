@@ -216,11 +216,14 @@ cv::Mat draw_view(const std::string& view,
 cv::Mat snapshot_pane(const std::string& view,
                       const std::shared_ptr<const Inspection>& inspection,
                       int frame,
-                      std::optional<cv::Size> size) {
+                      std::optional<cv::Size> size,
+                      const std::shared_ptr<const Extrapolation>& after) {
   WorkbenchState state;
   state.document.settings = inspection->settings;
   apply_recording(state, inspection->recording);
   state.results.inspection = inspection;
+  state.results.after = after;
+  if (after) state.results.extended = after->extended;
   state.messages.text.clear();
   const Pane& pane = pane_named(view);
   if (pane.kind != PaneKind::window)

@@ -32,11 +32,13 @@ cv::Mat draw_view(const std::string& view,
                   cv::Size window_size,
                   const Drawing& drawing);
 
-/// Returns a view of an inspection: CV_8UC3, BGR, reproducible. Throws InputError without OpenGL.
+/// Returns a view of an inspection: CV_8UC3, BGR, reproducible. `after`: cameras after its window;
+/// null: none. Throws InputError without OpenGL.
 cv::Mat snapshot_pane(const std::string& view,
                       const std::shared_ptr<const Inspection>& inspection,
                       int frame,
-                      std::optional<cv::Size> size);
+                      std::optional<cv::Size> size,
+                      const std::shared_ptr<const Extrapolation>& after = {});
 
 /// The same of a live source, as its window shows it.
 cv::Mat snapshot_live(const std::string& view,

@@ -136,6 +136,14 @@ struct DrawnView {
   std::vector<std::string> failures = {};                      ///< one line each, for people
 };
 
+/// Returns the configurations of compare and curves. Throws InputError.
+std::vector<Configuration> configurations_of(const ViewRequest& request);
+
+/// Adds an inspection, and the reason if it failed; `name` is for people.
+void add_result(DrawnView& drawn,
+                const std::shared_ptr<const Inspection>& inspection,
+                const std::string& name);
+
 /// Inspects and draws without a display. Throws InputError, and Stopped if it is stopped.
 DrawnView draw_view(const std::shared_ptr<const Recording>& recording,
                     const ViewRequest& request,

@@ -4,12 +4,9 @@
 #include "app/recordings/recordings.h"
 #include "app/terminal/terminal.h"
 #include "engine/base/error.h"
-#include "engine/experiment/summary.h"
 #include "engine/files/output_file.h"
 #include "engine/files/text_file.h"
-#include "engine/methods/methods.h"
 #include "engine/recording/images/images.h"
-#include "ui/views/report/report.h"
 #include "ui/views/snapshot.h"
 #include "ui/workbench_window.h"
 
@@ -17,95 +14,6 @@
 
 namespace gpo {
 namespace {
-
-std::vector<Configuration> configurations_of(const ViewRequest& request) {
-  if (request.methods) return parse_configurations(*request.methods, request.table);
-  std::vector<Configuration> all;
-  for (const MethodChoice& method : request.table.all()) all.push_back({.method = method});
-  return all;
-}
-
-void add_result(DrawnView& drawn,
-                const std::shared_ptr<const Inspection>& inspection,
-                const std::string& name) {
-  const Initialization& result = *inspection->initialization;
-  drawn.inspections.push_back(inspection);
-  drawn.ok |= result.ok;
-  if (!result.ok)
-    drawn.failures.push_back(fmt::format("{}: initialization failed: {}", name, result.reason));
-}
-
-int frame_to_draw(const ViewRequest& request, const Recording& recording) {
-  const Settings& settings = request.window;
-  const int frame = request.frame.value_or(settings.start + settings.frames - 1);
-  const int last = recording.frame_count() - 1;
-  if (frame >= 0 && frame <= last) return frame;
-  throw SettingError(
-      "frame", fmt::format("{} is not in the recording, which has frames 0 to {}", frame, last));
-}
-
-std::shared_ptr<const Inspection> inspected(Inspector& inspector,
-                                            const Settings& settings,
-                                            const std::stop_token& stop) {
-  auto inspection = inspector.inspect(settings, stop);
-  if (!inspection) throw Stopped{};
-  return inspection;
-}
-
-DrawnView draw_compare(const std::shared_ptr<const Recording>& recording,
-                       const ViewRequest& request,
-                       const std::stop_token& stop) {
-  const std::vector<Configuration> configurations = configurations_of(request);
-  const Settings base = base_of(configurations, request.window);
-  Inspector inspector(recording);
-  DrawnView drawn;
-  for (const Configuration& configuration : configurations) {
-    const auto inspection = inspected(inspector, apply(configuration, base), stop);
-    add_result(drawn, inspection, key_of(configuration_of(inspection->settings)));
-  }
-  drawn.image =
-      snapshot_compare(drawn.inspections, frame_to_draw(request, *recording), request.size);
-  return drawn;
-}
-
-DrawnView draw_one(const std::shared_ptr<const Recording>& recording,
-                   const ViewRequest& request,
-                   const std::string& key,
-                   const std::stop_token& stop) {
-  Inspector inspector(recording);
-  const auto inspection = inspected(inspector, request.window, stop);
-  const int frame = frame_to_draw(request, *recording);
-  DrawnView drawn;
-  drawn.image = key == "scene"     ? snapshot_scene(*inspection, frame, request.size)
-                : key == "normals" ? snapshot_normals(inspection, frame, request.size)
-                : key == "image"   ? snapshot_image(*inspection, frame, request.size)
-                                   : snapshot_pane(key, inspection, frame, request.size);
-  add_result(drawn, inspection, inspection->settings.options.method);
-  return drawn;
-}
-
-std::vector<int> lengths_of(const ViewRequest& request) {
-  const std::string text = request.lengths.value_or("5:end:5");
-  std::vector<int> lengths = numbers_in(parse_ranges(text, "lengths"), request.window.frames);
-  if (lengths.empty() || lengths.front() < 2)
-    throw InputError(fmt::format("--lengths: '{}' with --frames {}: a window has at least 2 frames",
-                                 text,
-                                 request.window.frames));
-  std::ranges::reverse(lengths);
-  return lengths;
-}
-
-DrawnView draw_curves(const std::shared_ptr<const Recording>& recording,
-                      const ViewRequest& request,
-                      const std::stop_token& stop) {
-  if (!recording->truth && !(recording->board && recording->images))
-    throw InputError(fmt::format("--view curves: {} has no ground truth to measure errors against",
-                                 recording->name));
-  DrawnView drawn;
-  const Figure figure = curves_over_length(recording, request, drawn, stop);
-  drawn.image = draw_figure(figure, request.size.value_or(default_figure_size(figure)));
-  return drawn;
-}
 
 struct SnapshotArguments {
   InspectArguments inspect;
@@ -289,58 +197,6 @@ int draw_one_view(const SnapshotArguments& arguments, const ViewRequest& request
 
 }  // namespace
 
-Figure curves_over_length(const std::shared_ptr<const Recording>& recording,
-                          const ViewRequest& request,
-                          DrawnView& drawn,
-                          const std::stop_token& stop) {
-  const std::vector<Configuration> configurations = configurations_of(request);
-  Settings window = base_of(configurations, request.window);
-  FigurePlan plan{.name = "curves", .title = "", .configurations = {}};
-  for (const Configuration& configuration : configurations)
-    plan.configurations.push_back(configuration_of(apply(configuration, window)));
-  std::vector<Row> rows;
-  Inspector inspector(recording);
-  // The longest window comes first: the Inspector caches its tracks for the others.
-  for (const int length : lengths_of(request)) {
-    window.frames = length;
-    for (const Configuration& configuration : configurations) {
-      const auto inspection = inspected(inspector, apply(configuration, window), stop);
-      rows.push_back(make_row(*inspection));
-      if (drawn.inspections.size() < configurations.size()) drawn.inspections.push_back(inspection);
-    }
-  }
-  std::ranges::reverse(rows);
-  const bool truth =
-      std::ranges::any_of(rows, [](const Row& row) { return !row.alignment.empty(); });
-  Figure figure = truth ? figure_over_length(rows, plan) : figure_without_truth(rows, plan);
-  // One window per length was requested here, so its points are not drawn as few of many.
-  for (Chart& chart : figure.charts)
-    for (Curve& curve : chart.curves) curve.counts.clear();
-  figure.title = curves_title(recording->name, window.start);
-  for (const Configuration& configuration : plan.configurations) {
-    const auto own = rows_of(rows, {&configuration, 1});
-    const bool solved = std::ranges::any_of(own, &Row::ok);
-    drawn.ok |= solved;
-    if (!solved)
-      drawn.failures.push_back(fmt::format("{}: {}", own.back().configuration, own.back().reason));
-  }
-  return figure;
-}
-
-DrawnView draw_view(const std::shared_ptr<const Recording>& recording,
-                    const ViewRequest& request,
-                    const std::stop_token& stop) {
-  const Pane* pane = find_pane(request.view);
-  if (pane == nullptr)
-    throw SettingError(
-        "view",
-        fmt::format("'{}', expected one of {}", request.view, fmt::join(pane_names(), ", ")));
-  const std::string key = pane->key;
-  if (key == "compare") return draw_compare(recording, request, stop);
-  return key == "curves" ? draw_curves(recording, request, stop)
-                         : draw_one(recording, request, key, stop);
-}
-
 RunCommand add_snapshot(CLI::App& app) {
   const auto to = std::make_shared<SnapshotArguments>();
   CLI::App& command =
@@ -359,7 +215,10 @@ RunCommand add_snapshot(CLI::App& app) {
       ->excludes(script);
   command.add_option("--output", to->output, "PNG file to write")->excludes(script);
   command.add_option(
-      "--frame", to->drawn.frame, "Frame of the recording to draw; default: the window's last");
+      "--frame",
+      to->drawn.frame,
+      "Frame of the recording to draw, after the window with an extrapolated camera; default: the "
+      "window's last");
   command.add_option(
       "--methods",
       to->drawn.methods,

@@ -153,6 +153,8 @@ struct Session {
     const std::stop_callback wake(current_stop(), [] { glfwPostEmptyEvent(); });
     while (!window.should_close() && !host.state.requests.quit &&
            !current_stop().stop_requested()) {
+      // An event may open what Dear ImGui draws only some frames later, as a menu.
+      if (input.waiting()) frames = equal = 0;
       const Commands commands = input.dispatch(host.state);
       for (const Command& command : commands) apply(host.state, command);
       if (!commands.empty()) {

@@ -1,6 +1,8 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
+#include "app/commands/commands.h"
 #include "engine/recording/images/images.h"
+#include "engine/recording/layouts/open_recording.h"
 #include "tests/app/program.h"
 
 #include <gmock/gmock.h>
@@ -120,6 +122,41 @@ TEST(Snapshot, BaselineOfAnotherSizeIsReported) {
   expect_exit(1, outcome, "the baseline is 320x240, the image 640x480");
   EXPECT_EQ(outcome.out.find("pixels that differ"), std::string::npos) << outcome.out;
   EXPECT_EQ(outcome.out.find("diff.png"), std::string::npos) << outcome.out;  // not written
+}
+
+/// Draws a view of a frame for a window of the first frames.
+DrawnView drawn_frame(const std::string& view, int frame, int frames) {
+  static const auto recording = open_recording(desk());
+  ViewRequest request;
+  request.view = view;
+  request.frame = frame;
+  request.window.frames = frames;
+  return draw_view(recording, request);
+}
+
+TEST(Snapshot, FramesAfterTheWindowHaveExtrapolatedCameras) {
+  const auto dashes = [](const cv::Mat& image) {  // which frame an extrapolated image
+    cv::Mat border;
+    cv::inRange(image.rowRange(1, 4), cv::Scalar(204, 233, 245), cv::Scalar(224, 253, 255), border);
+    return cv::countNonZero(border);
+  };
+  const DrawnView after = drawn_frame("image", 27, 20);
+  EXPECT_TRUE(after.failures.empty());
+  EXPECT_GT(dashes(after.image), 200);
+  EXPECT_LT(dashes(drawn_frame("image", 27, 28).image), 20) << "in the window";
+  EXPECT_GT(
+      cv::norm(
+          drawn_frame("scene", 27, 20).image, drawn_frame("scene", 19, 20).image, cv::NORM_INF),
+      100)
+      << "the scene has the path of these cameras";
+}
+
+TEST(Snapshot, FramesOutsideOfAFailedWindowShowTheirImage) {
+  const DrawnView drawn = drawn_frame("image", 40, 2);
+  EXPECT_FALSE(drawn.ok);
+  const cv::Mat frame = open_recording(desk())->images->bgr(40);
+  const cv::Rect below(0, 240, 640, 200);
+  EXPECT_LT(cv::norm(drawn.image(below), frame(below), cv::NORM_INF), 3);
 }
 
 TEST(Snapshot, RefusesBadInputInOneLineAndLeavesNoFile) {

@@ -39,6 +39,7 @@ expect() {
     fail "$what: $* from $low to $high, not $value"
 }
 
+export XDG_STATE_HOME=$PWD/state
 start_program "$program" view
 until_true "the window to stop changing" at_rest
 key Escape  # closes the card of the first run
@@ -102,7 +103,9 @@ expect "a click on the time line to go to frame 40" 39 41 frame
 cube() { save; python3 -c 'import json; s = json.load(open("now.json")); print(s.get("cube_ray"), s["settings"])'; }
 before=$(cube)
 mouse_to $((width * 2 / 5)) $((height * 2 / 5))
-xdotool click 3
+stop pointed
+xdotool click 3  # pressed and released at once, and no event follows
+until_true "a fast right click to open a menu" other_than pointed.png
 stop context-image
 key Escape
 mouse_to "$x" "$y"
@@ -142,6 +145,20 @@ mouse_to $((292 + (width - 292) / 6)) $((height / 2))
 xdotool keydown alt click 1 keyup alt
 stop scale
 
+# Exports, saves an image of a view, and opens the last saved session.
+for line in "export result out.json" "export gltf out.glb" "screenshot out.png scene 640x480"; do
+  type_command "$line"
+done
+for file in out.json out.glb out.png; do until_true "$file to be written" test -s $file; done
+save
+cp now.json opened.json
+type_command "set frames 12"
+expect "set frames to change the window" 12 12 settings frames
+type_command "open $PWD/opened.json"
+until_true "the session to be opened" opened "$name"
+expect "open to restore the session" "$frames" "$frames" settings frames
+stop reopened
+
 # Types commands fast and counts the bookmarks after each fifty.
 for batch in $(seq 1 $(((commands + 99) / 100))); do
   for i in $(seq 0 49); do
@@ -164,4 +181,12 @@ stop dropped
 # Over a view that is slow to draw, all key events arrive within one frame and none after it.
 mouse_to $((width * 2 / 5)) $((height * 2 / 5))
 stop hovering
+quit || exit 1
+
+# A new window continues with what was open.
+start_program "$program" view
+until_true "the window to stop changing" at_rest
+type_command continue
+until_true "continue to open what was open last" opened "$(basename "$other")"
+stop continued
 quit

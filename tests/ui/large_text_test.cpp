@@ -180,6 +180,23 @@ TEST_F(Texts, NameOfTheRecordingIsShownInAnyScript) {
   EXPECT_NE(font(Font::regular)->FindGlyphNoFallback(0x4F60), nullptr);
 }
 
+TEST_F(Texts, ErrorsAgainstGroundTruthNeedNoScrolling) {
+  Inspection inspection = made_inspection({.normal_sigma_deg = 0.3});
+  inspection.evaluation->scale_error_percent = 1;
+  open(inspection);
+  const cv::Rect column(0, 0, static_cast<int>(layout_.results.right()), kHeight);
+  const cv::Mat before = image()(column).clone();
+  for (const auto error : {&Evaluation::pne_deg,
+                           &Evaluation::pde_m,
+                           &Evaluation::ate_m,
+                           &Evaluation::scale_error_percent}) {
+    Inspection other = inspection;
+    *other.evaluation.*error = 7.7;
+    state_.results.inspection = std::make_shared<const Inspection>(other);
+    EXPECT_FALSE(same_bytes(before, image()(column).clone()));
+  }
+}
+
 void hold_enter(bool down) {
   ImGuiIO& io = ImGui::GetIO();
 #if IMGUI_VERSION_NUM < 18700

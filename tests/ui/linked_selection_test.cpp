@@ -137,7 +137,7 @@ TEST_F(LinkedSelection, EveryEntryOfAContextMenuIsAnAction) {
     const std::string line = entry.line(state_, any);
     EXPECT_TRUE(line.empty() || match_line(line)) << line;
   }
-  EXPECT_EQ(titles.size(), 17U);
+  EXPECT_EQ(titles.size(), 20U);
 }
 
 TEST_F(LinkedSelection, MenusOfNumbersCopyWithAndWithoutUncertainty) {
@@ -189,6 +189,20 @@ TEST_F(LinkedSelection, RightClickInTheImageOffersToPutTheCubeThere) {
                                   to_image(mapping, at),
                                   inspection_->initialization->plane);
   EXPECT_LT((ray->normalized() - *state_.document.cube_ray).norm(), 1e-8);
+}
+
+TEST_F(LinkedSelection, MenuOfAPixelPicksItAndOffersScaleAndOriginForTwoPoints) {
+  constexpr const char* kScale = "Set the scale from two points ...";
+  for (const int x : {60, 160}) {
+    click(image().min + Vector2d(x, 200), 1);
+    EXPECT_EQ(line_of_entry(ContextKind::point, kScale), "");
+    run_entry(ContextKind::point, "Pick this point (Alt+click)");
+  }
+  EXPECT_EQ(state_.selection.points_px.size(), 2U);
+  EXPECT_THAT(state_.messages.text, testing::HasSubstr("right-click the image"));
+  click(image().min + Vector2d(120, 200), 1);
+  EXPECT_EQ(line_of_entry(ContextKind::point, kScale), "palette set-scale");
+  EXPECT_EQ(line_of_entry(ContextKind::point, "Set the origin and x axis"), "set-origin");
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tests/ui/linked_selection.h"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 
 namespace gpo::test {
@@ -90,6 +91,34 @@ TEST_F(MasksInTheImage, ScriptsAddMasksAndAreRefusedWithAReason) {
   EXPECT_THAT(refusal(state_, "mask not 10 20"), HasSubstr("(a rectangle)"));
   EXPECT_THAT(refusal(state_, "mask not 10 20 30"), HasSubstr("mask not: expected a number"));
   EXPECT_THAT(refusal(state_, "mask not 10 20 10 90"), HasSubstr("an area of at least one pixel"));
+}
+
+TEST_F(MasksInTheImage, BelongToTheirFrameAndVanishWithANoteIfTheWindowStartsElsewhere) {
+  run_line(state_, "mask not 10 20 110 90");
+  const std::string drawn = masks();
+  run_line(state_, fmt::format("set frames {}", state_.document.settings.frames - 1));
+  EXPECT_EQ(masks(), drawn) << "the window starts with the same frame";
+  run_line(state_, "set start 7");
+  EXPECT_EQ(masks(), "none");
+  EXPECT_EQ(state_.messages.text,
+            "1 mask of frame 5 removed: the window starts elsewhere. Ctrl+Z restores both");
+  run_line(state_, "undo");
+  EXPECT_EQ(state_.document.settings.start, kStart);
+  EXPECT_EQ(masks(), drawn);
+}
+
+TEST_F(MasksInTheImage, ReturnWhenADragEndsAtTheirFrame) {
+  run_line(state_, "mask not 10 20 110 90");
+  const std::string drawn = masks();
+  for (const int start : {kStart + 1, kStart + 2, kStart}) {
+    Settings dragged = state_.document.settings;
+    dragged.start = start;
+    apply(state_, ChangeSettings{dragged, true});
+    EXPECT_EQ(masks(), start == kStart ? drawn : "none") << start;
+  }
+  run_line(state_, "undo");
+  EXPECT_EQ(masks(), drawn);
+  EXPECT_EQ(state_.document.undo.size(), 1U) << "the drag is one step";
 }
 
 TEST_F(MasksInTheImage, AreDrawnInTheReferenceFrameOnly) {

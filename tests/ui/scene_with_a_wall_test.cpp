@@ -115,6 +115,7 @@ TEST_F(SceneWithAWall, ScriptMovesTheCubeOfThePlaneUnderAPixelAndPicksPointsForT
   run_line(state_, "pick " + text(wall[0]));
   run_line(state_, "pick " + text(wall[1]));
   run_line(state_, "set-scale 0.5");
+  EXPECT_THAT(state_.messages.text, testing::HasSubstr("in meters by these points"));
   const Settings set = state_.document.settings;
   EXPECT_EQ(set.scale_length, 0.5);
   EXPECT_EQ(set.scale_points.frame(), kStart);

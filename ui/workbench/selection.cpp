@@ -44,6 +44,10 @@ void pick_point(WorkbenchState& state, const Vector2d& raw_px) {
     selection.points_px.clear();
   selection.points_frame = state.view.frame;
   selection.points_px.push_back(raw_px);
+  say(state,
+      selection.points_px.size() == 1
+          ? "first point picked; Alt+click the second one"
+          : "two points picked; right-click the image to set their distance or the origin");
 }
 
 void close_next(WorkbenchState& state) {

@@ -22,25 +22,6 @@ bool at_end_of_loop(const WorkbenchState& state) {
          state.view.frame >= state.document.settings.start + state.document.settings.frames - 1;
 }
 
-void push_undo(Document& document) {
-  constexpr std::size_t kMostUndo = 200;
-  document.undo.push_back(document);
-  if (document.undo.size() > kMostUndo) document.undo.erase(document.undo.begin());
-  document.redo.clear();
-}
-
-/// Restores the last step of `from` and appends the current one to `to`. A note on the change that
-/// is undone would be wrong now, so it vanishes.
-void step_back(WorkbenchState& state, std::vector<UndoStep>& from, std::vector<UndoStep>& to) {
-  if (from.empty()) return;
-  Document& document = state.document;
-  if (state.messages.severity == Severity::note) state.messages.text.clear();
-  to.push_back(document);
-  static_cast<UndoStep&>(document) = from.back();
-  from.pop_back();
-  document.dragging_settings = false;
-}
-
 /// The tracks seen in the current frame for which `takes(frame in window, column)`.
 std::vector<std::int64_t> tracks_if(const WorkbenchState& state, auto&& takes) {
   std::vector<std::int64_t> ids;
@@ -168,41 +149,6 @@ std::optional<double> seconds_to_next_frame(const WorkbenchState& state) {
       seconds_of_frame(*state.document.recording, last ? state.view.frame - 1 : state.view.frame);
   return (duration - state.view.play_seconds) / state.view.speed;
 }
-
-void change_settings(WorkbenchState& state, Settings settings, bool dragging) {
-  Document& document = state.document;
-  if (document.recording) settings = fit_window(settings, state.frame_count());
-  // Track ids count from the reference frame, so excluded ones are meaningless for another start.
-  if (settings.start != document.settings.start) settings.exclude.clear();
-  if (settings == document.settings) return;
-  if (!dragging || !document.dragging_settings) push_undo(document);
-  document.dragging_settings = dragging;
-  document.redo.clear();
-  document.settings = std::move(settings);
-}
-
-void move_cube(WorkbenchState& state,
-               const std::optional<Vector3d>& ray,
-               int plane,
-               bool dragging) {
-  Document& document = state.document;
-  UndoStep moved = document;
-  if (ray && plane > 0)
-    moved.other_cube_rays[plane] = *ray;
-  else
-    moved.cube_ray = ray;
-  if (!ray) moved.other_cube_rays.clear();
-  if (moved.cube_ray == document.cube_ray && moved.other_cube_rays == document.other_cube_rays)
-    return;
-  if (!dragging) push_undo(document);
-  document.redo.clear();
-  document.dragging_settings = false;
-  static_cast<UndoStep&>(document) = std::move(moved);
-}
-
-void undo(WorkbenchState& state) { step_back(state, state.document.undo, state.document.redo); }
-
-void redo(WorkbenchState& state) { step_back(state, state.document.redo, state.document.undo); }
 
 std::vector<std::int64_t> tracks_of_window(const WorkbenchState& state) {
   if (!state.results.inspection) return {};

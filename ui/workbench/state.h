@@ -271,6 +271,7 @@ void advance(WorkbenchState& state, double seconds);
 std::optional<double> seconds_to_next_frame(const WorkbenchState& state);
 
 /// Changes the settings; `undo` restores the old ones, those of all changes while `dragging`.
+/// Another start removes excluded tracks and masks, which belong to the reference frame.
 void change_settings(WorkbenchState& state, Settings settings, bool dragging = false);
 /// Moves a plane's cube to where the ray of the reference camera meets the plane; nullopt: resets
 /// all. `plane` counts from 1; 0: the leading plane. `dragging`: `undo` restores the place before

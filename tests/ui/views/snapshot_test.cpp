@@ -11,6 +11,7 @@
 #include <set>
 #include <utility>
 
+#include <Eigen/LU>
 #include <opencv2/calib3d.hpp>
 #include <opencv2/imgproc.hpp>
 
@@ -60,6 +61,55 @@ TEST_F(Snapshot, UndistortsAsOpenCvDoes) {
   cv::Mat difference;
   cv::absdiff(drawn, expected, difference);
   EXPECT_LT(cv::mean(difference.reshape(1))[0], 1.5) << "of 255";
+}
+
+/// Returns the smallest rectangle around the pixels that differ.
+cv::Rect differing_part(const cv::Mat& a, const cv::Mat& b) {
+  cv::Mat difference, largest;
+  cv::absdiff(a, b, difference);
+  cv::reduce(
+      difference.reshape(1, static_cast<int>(difference.total())), largest, 1, cv::REDUCE_MAX);
+  return cv::boundingRect(largest.reshape(1, a.rows));
+}
+
+TEST_F(Snapshot, LegendIsInACornerWithoutACube) {
+  for (const Vector2d& at : {Vector2d(0, 0), Vector2d(640, 0)}) {
+    Inspection inspection = made_inspection();
+    const Window& window = *inspection.window;
+    const auto from_corner = [&](int j) { return (window.points_px[0].col(j) - at).norm(); };
+    int nearest = 0;
+    for (int j = 0; j < window.track_count(); ++j)
+      if (from_corner(j) < from_corner(nearest)) nearest = j;
+    move_cubes(inspection, window.K.inverse() * window.points_px[0].col(nearest).homogeneous());
+    ViewOptions all{.cube_side = 0.5}, no_legend{.show = {.legend = false}, .cube_side = 0.5};
+    ViewOptions no_cube = no_legend;
+    no_cube.show.cube = false;
+    const auto drawn = [&](int frame, const ViewOptions& options) {
+      return snapshot_image(inspection, frame, {}, options);
+    };
+    const int frame = window.start + 10;
+    const cv::Mat without = drawn(frame, no_legend);
+    const cv::Rect legend = differing_part(drawn(frame, all), without);
+    const cv::Rect cube = differing_part(drawn(frame, no_cube), without);
+    const cv::Rect on_its_side({at.x() > 0 ? 630 - legend.width : 10, 10}, legend.size());
+    EXPECT_GT((on_its_side & cube).area(), 0) << "the cube is where a legend could be";
+    EXPECT_EQ((legend & cube).area(), 0) << legend << " covers " << cube;
+    EXPECT_EQ(differing_part(drawn(frame + 5, all), drawn(frame + 5, no_legend)).tl(), legend.tl())
+        << "it stays there in all frames";
+  }
+}
+
+TEST_F(Snapshot, SaysWhyAFrameAfterTheWindowHasNoCamera) {
+  const auto inspection = std::make_shared<const Inspection>(made_inspection());
+  Extrapolation ended{inspection};
+  ended.end = "frame 36: 5 points of the planes seen, at least 8 are needed";
+  const ViewOptions options{.after = std::make_shared<const Extrapolation>(ended)};
+  const auto differs = [&](int frame) {
+    return !same_bytes(snapshot_image(*inspection, frame),
+                       snapshot_image(*inspection, frame, {}, options));
+  };
+  EXPECT_TRUE(differs(38));
+  EXPECT_FALSE(differs(2)) << "before the window";
 }
 
 TEST_F(Snapshot, DrawsEveryKindOfInspectionWithoutMessages) {

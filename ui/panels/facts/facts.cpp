@@ -135,11 +135,7 @@ ResultGroup result_group(const Inspection& inspection) {
   const SolverReport& solver = result.solver;
   ResultGroup group{
       "RESULT",
-      {{.label = "Status",
-        .value = result.ok ? "ok" : "failed",
-        .tooltip = result.ok ? "The window was initialized" : result.reason,
-        .color = result.ok ? Role::good : Role::bad},
-       {.label = "Inliers",
+      {{.label = "Inliers",
         .value = fmt::format("{} / {}", window.inlier_count(0), used_tracks(inspection)),
         .note = inliers_note(inspection),
         .tooltip = "Tracks that agree with the homographies of the plane, and all tracks that are "
@@ -148,16 +144,16 @@ ResultGroup result_group(const Inspection& inspection) {
   group.rows.push_back(
       solver.iterations > 0
           ? ResultRow{.label = "Iterations",
-                      .value = std::to_string(solver.iterations),
+                      .value = iterations_text(solver),
                       .note = solver.termination == Termination::convergence ? "converged" : "",
-                      .tooltip =
-                          fmt::format("{} iterations led to the result; {} unknowns, {} residuals, "
-                                      "cost {:.4g} to {:.4g} px\u00b2",
-                                      iterations_text(solver),
-                                      solver.unknowns,
-                                      solver.residuals,
-                                      solver.initial_cost,
-                                      solver.final_cost)}
+                      .tooltip = fmt::format(
+                          "Iterations of the solver, \"42 of 110\" if the others belong "
+                          "to discarded attempts; {} unknowns, {} residuals, cost "
+                          "{:.4g} to {:.4g} px\u00b2",
+                          solver.unknowns,
+                          solver.residuals,
+                          solver.initial_cost,
+                          solver.final_cost)}
           : dash("Iterations", "The solver was not run"));
   return group;
 }
@@ -319,17 +315,18 @@ std::pair<std::string, std::string> value_and_uncertainty(const std::string& val
 
 std::vector<ResultGroup> result_groups(const Inspection* inspection, bool timings, double side) {
   if (!inspection || !inspection->initialization || !inspection->window)
-    return {unknown_group(kMotionTitle, {"Rotation alone", "Baseline |t|"}),
-            unknown_group("RESULT", {"Status", "Inliers", kTransferRms, "Iterations"}),
-            unknown_group("ERROR AGAINST GROUND TRUTH", {"PNE", "PNE aligned", "PDE", "ATE"}),
+    return {unknown_group("ERROR AGAINST GROUND TRUTH", {"PNE", "PNE aligned", "PDE", "ATE"}),
+            unknown_group("RESULT", {"Inliers", kTransferRms, "Iterations"}),
+            unknown_group(kMotionTitle, {"Rotation alone", "Baseline |t|"}),
             unknown_group(
                 "UNCERTAINTY",
                 {"Normal", "Distance ratio", "Bound, known rotations", "Bound, unknown bias"}),
             unknown_group(kTimeTitle,
                           {"Track", "RANSAC", "Rotations", "Initialize", "Solver", "Total"})};
-  std::vector<ResultGroup> groups{verdict_group(*inspection),
+  // The most important rows come first: a window of 1280x720 shows no others without scrolling.
+  std::vector<ResultGroup> groups{metrics_group(*inspection),
                                   result_group(*inspection),
-                                  metrics_group(*inspection),
+                                  verdict_group(*inspection),
                                   uncertainty_group(*inspection),
                                   gravity_group(*inspection, cube_side(*inspection, side)),
                                   timing_group(inspection->timing, timings)};

@@ -189,12 +189,11 @@ void reset_button(const PanelContext& ui) {
   const Settings& settings = ui.state.document.settings;
   const int frames = ui.state.frame_count();
   if (settings == (frames > 0 ? fit_window({}, frames) : Settings{})) return;
-  const char* title = "reset";
   ImGui::PushFont(font(Font::small));
   ImGui::SameLine();
   ImGui::SetCursorPosX(ImGui::GetCursorPosX() + ImGui::GetContentRegionAvail().x -
-                       ImGui::CalcTextSize(title).x - 8 * ui.scale);
-  if (ImGui::SmallButton(title)) push(ui.commands, RunAction{"reset"});
+                       ImGui::CalcTextSize("reset").x - 8 * ui.scale);
+  if (ImGui::SmallButton("reset")) push(ui.commands, RunAction{"reset"});
   ImGui::PopFont();
   tooltip("Resets all settings including window and method. Ctrl+Z to undo");
 }
@@ -285,12 +284,13 @@ void draw_pairs(const PanelContext& ui, const ResultGroup& group, const RowPlace
 /// Draws the verdict as sign and word, its normal uncertainty at the right, and the reason below.
 void draw_verdict(const PanelContext& ui, const Initialization& result, const RowPlace& place) {
   const Verdict verdict = result.verdict.value_or(Verdict{});
-  const SignStyle look = result.verdict ? style_of(verdict.readiness)
-                         : result.ok    ? SignStyle{Sign::none, color_of(Role::text_dim)}
-                                        : SignStyle{Sign::cross, color_of(Role::bad)};
-  const std::string word = result.verdict ? to_string(verdict.readiness)
-                           : result.ok    ? "not judged"
-                                          : "failed";
+  const bool judged = result.verdict && (result.ok || verdict.readiness == Readiness::degenerate);
+  const SignStyle look = judged      ? style_of(verdict.readiness)
+                         : result.ok ? SignStyle{Sign::none, color_of(Role::text_dim)}
+                                     : SignStyle{Sign::cross, color_of(Role::bad)};
+  const std::string word = judged      ? to_string(verdict.readiness)
+                           : result.ok ? "not judged"
+                                       : "failed";
   ImGui::SetCursorPosX(place.left);
   ImGui::BeginGroup();
   ImGui::PushFont(font(Font::heading));
@@ -311,7 +311,7 @@ void draw_verdict(const PanelContext& ui, const Initialization& result, const Ro
   wrapped_text(result.ok || result.reason.empty() ? verdict.reason : result.reason, place.right);
   ImGui::PopFont();
   ImGui::EndGroup();
-  if (result.verdict) tooltip("Verdict on the window: " + verdict_text(verdict));
+  if (judged) tooltip("Verdict on the window: " + verdict_text(verdict));
 }
 
 void draw_state(const PanelInput& input, float right) {

@@ -211,8 +211,8 @@ void open_menu(const Pointer& pointer, std::optional<std::int64_t> track) {
   std::vector<ContextSubject> subjects;
   if (track) subjects.push_back(track_subject(*inspection, *track));
   const int frame = pointer.frame - inspection->window->start;
+  const Vector2d raw_px = to_image(pointer.mapping, pointer.at);
   if (inspection->initialization->ok && frame >= 0 && frame < inspection->window->frame_count()) {
-    const Vector2d raw_px = to_image(pointer.mapping, pointer.at);
     const int number = plane_near(*inspection, frame, raw_px).value_or(inspection->window->leader);
     const Plane* plane = estimated_plane(*inspection, number);
     subjects.push_back(plane_subject(
@@ -220,6 +220,7 @@ void open_menu(const Pointer& pointer, std::optional<std::int64_t> track) {
         number,
         plane == nullptr ? std::nullopt : point_on_plane(*inspection, frame, raw_px, *plane)));
   }
+  subjects.push_back(point_subject(raw_px));
   subjects.push_back({.kind = ContextKind::area, .title = "Masks of the reference frame"});
   open_context_menu(pointer.ui, std::move(subjects));
 }

@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <map>
 
+#include <Eigen/Geometry>
 #include <fmt/format.h>
 
 namespace gpo {
@@ -257,6 +258,49 @@ void draw_extrapolated_frame(const Canvas& canvas) {
     canvas.list.AddLine(to_imgui(start), to_imgui(end), imgui_color(Role::uncertain), 3 * s);
 }
 
+/// Returns the share of a box that a rectangle covers.
+double covered_share(const ScreenRect& rect, const std::pair<ImVec2, ImVec2>& box) {
+  const Eigen::AlignedBox2d covering(rect.min, rect.min + rect.size);
+  const Eigen::AlignedBox2d covered(Vector2d(box.first.x, box.first.y),
+                                    Vector2d(box.second.x, box.second.y));
+  const Eigen::AlignedBox2d both = covering.intersection(covered);
+  return both.isEmpty() || covered.volume() <= 0 ? 0 : both.volume() / covered.volume();
+}
+
+/// Returns how much a rectangle covers in all frames of the window: tracks, and cubes, of which
+/// each counts as many tracks.
+double covered_by(const ScreenRect& rect, const Canvas& canvas) {
+  constexpr double kTracksPerCube = 40;
+  const Inspection& inspection = canvas.inspection;
+  const Tracks& tracks = *inspection.tracks;
+  const ViewToggles& show = canvas.options.show;
+  const Eigen::AlignedBox2d box(rect.min, rect.min + rect.size);
+  double covered = 0;
+  for (int i = 0; i < std::min(inspection.window->frame_count(), tracks.frame_count()); ++i) {
+    for (int track = 0; show.tracks && track < tracks.track_count(); ++track)
+      if (tracks.seen(i, track))
+        covered += box.contains(to_screen(canvas.mapping, tracks.raw_px[i].col(track))) ? 1 : 0;
+    if (!show.cube || !inspection.initialization->ok) continue;
+    for (const CubeAnchor& anchor : cubes_far_to_near(inspection, i)) {
+      const CubeImage cube = cube_on(inspection, i, anchor, canvas.cube_size());
+      covered += kTracksPerCube * covered_share(rect, bounds(canvas, cube));
+    }
+  }
+  return covered;
+}
+
+/// Returns the corner in which a legend covers least. It is the same for all frames of the window,
+/// so that it stays in its place in a movie.
+Corner legend_corner(const Canvas& canvas, const std::string& title, const LegendRows& rows) {
+  constexpr std::array kCorners = {
+      Corner::top_left, Corner::top_right, Corner::bottom_left, Corner::bottom_right};
+  // Below is the badge of a failure.
+  const std::size_t candidates = canvas.inspection.initialization->ok ? kCorners.size() : 2;
+  return *std::ranges::min_element(std::span(kCorners).first(candidates), {}, [&](Corner corner) {
+    return covered_by(legend_place(canvas.rect, corner, title, rows), canvas);
+  });
+}
+
 std::string heading(const FrameView& view) {
   const auto& times = view.inspection.recording->timestamps_ns;
   const double seconds = static_cast<double>(times[view.frame] - times.front()) * 1e-9;
@@ -307,13 +351,15 @@ LegendHits draw_image_view(const Area& area, const FrameView& view, ImageTexture
   } else {
     const int first = inspection.window->start, last = first + inspection.window->frame_count() - 1;
     rows.push_back({Sign::none, 0, fmt::format("outside of the window {}–{}", first, last)});
+    if (const auto& after = options.after; after && frame > last && !after->end.empty())
+      rows.push_back({Sign::none, color_of(Role::warning), "no camera here: " + after->end});
   }
   LegendHits hits;
   if (options.show.legend && options.legend_line)
     hits =
         draw_legend_line(area, canvas.mapping.origin.y() - area.rect.min.y(), heading(view), rows);
   else if (options.show.legend)
-    draw_legend(area, Corner::top_left, heading(view), rows);
+    draw_legend(area, legend_corner(canvas, heading(view), rows), heading(view), rows);
   if (view.inside() && !inspection.initialization->ok && options.says_failure)
     draw_badge(area, color_of(Role::warning), "not initialized", inspection.initialization->reason);
   area.list.PopClipRect();

@@ -5,12 +5,10 @@
 #include "engine/inspection/studies/studies.h"
 
 #include <algorithm>
-#include <numeric>
 #include <sstream>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <opencv2/imgproc.hpp>
 
 namespace gpo {
 namespace {
@@ -31,21 +29,6 @@ void draw_ground(const Area& area, std::uint32_t frame_rgb) {
 
 /// Okabe and Ito's colors that mean nothing else: orange, reddish purple, blue; and ochre.
 constexpr std::array<std::uint32_t, 4> kOtherPlanes = {0xE69F00, 0xCC79A7, 0x4A7FD0, 0xB59B3C};
-
-std::optional<double> value_of(const TrackLife& life, Coloring coloring) {
-  if (coloring == Coloring::residual) return rms_residual_px(life);
-  if (coloring == Coloring::depth) return life.depth;
-  return static_cast<double>(life.frames.size());
-}
-
-std::string text_of(Coloring coloring, double value) {
-  if (coloring == Coloring::residual) return fmt::format("{:.2f} px", value);
-  if (coloring == Coloring::depth) return fmt::format("{:.2f} d", value);
-  return counted(static_cast<std::size_t>(value), "frame");
-}
-
-/// Returns viridis without its darkest part, for dark images. `share` in 0..1.
-std::uint32_t ramp_color(double share) { return viridis(0.3 + 0.7 * std::clamp(share, 0.0, 1.0)); }
 
 }  // namespace
 
@@ -101,30 +84,38 @@ void draw_legend_row(ImDrawList& list,
   write_text(list, Font::small, {at.x + text_indent(row, indent.text), at.y}, row.text, text_rgb);
 }
 
+ScreenRect legend_place(const ScreenRect& rect,
+                        Corner corner,
+                        const std::string& title,
+                        const LegendRows& rows) {
+  const float s = overlay_scale(), padding = 9 * s, margin = 10 * s;
+  double width = text_width(Font::bold, title);
+  for (const LegendRow& row : rows)
+    width = std::max(width, text_indent(row, 22 * s) + text_width(Font::small, row.text));
+  const float line = font(Font::small)->FontSize + 4 * s;
+  const float top = title.empty() ? 0 : font(Font::bold)->FontSize + 4 * s;
+  const Vector2d size(width + 2 * padding,
+                      top + line * static_cast<float>(rows.size()) - 4 * s + 2 * padding);
+  const Vector2d far = rect.size - size - Vector2d::Constant(margin);
+  const bool right = corner == Corner::top_right || corner == Corner::bottom_right;
+  const bool bottom = corner == Corner::bottom_left || corner == Corner::bottom_right;
+  const Vector2d from(right ? far.x() : margin, bottom ? far.y() : margin);
+  return {(rect.min + from).array().round(), size};
+}
+
 void draw_legend(const Area& area,
                  Corner corner,
                  const std::string& title,
                  const LegendRows& rows) {
-  const auto& [list, rect] = area;
   const float s = overlay_scale();
-  const float padding = 9 * s, margin = 10 * s, sign_width = 22 * s, gap = 4 * s;
-  const float line = font(Font::small)->FontSize + gap;
-  double width = text_width(Font::bold, title);
-  for (const LegendRow& row : rows)
-    width = std::max(width, text_indent(row, sign_width) + text_width(Font::small, row.text));
-  const float top = title.empty() ? 0 : font(Font::bold)->FontSize + gap;
-  const Vector2d size(width + 2 * padding,
-                      top + line * static_cast<float>(rows.size()) - gap + 2 * padding);
-  const double y =
-      corner == Corner::bottom_left ? rect.size.y() - size.y() - margin : double{margin};
-  const Vector2d min = (rect.min + Vector2d(margin, y)).array().round();
-  draw_ground({list, {min, size}}, color_of(Role::border));
-  Vector2d at = min + Vector2d::Constant(padding);
-  write_text(list, Font::bold, at, title);
-  at.y() += top;
+  const ScreenRect place = legend_place(area.rect, corner, title, rows);
+  draw_ground({area.list, place}, color_of(Role::border));
+  Vector2d at = place.min + Vector2d::Constant(9 * s);
+  write_text(area.list, Font::bold, at, title);
+  if (!title.empty()) at.y() += font(Font::bold)->FontSize + 4 * s;
   for (const LegendRow& row : rows) {
-    draw_legend_row(list, to_imgui(at), row, {7 * s, sign_width});
-    at.y() += line;
+    draw_legend_row(area.list, to_imgui(at), row, {7 * s, 22 * s});
+    at.y() += font(Font::small)->FontSize + 4 * s;
   }
 }
 
@@ -341,50 +332,6 @@ std::vector<VerdictRun> verdict_runs(std::span<const Verdict> growth) {
     runs.back().last = i + 1;
   }
   return runs;
-}
-
-std::uint32_t viridis(double share) {
-  static const cv::Mat3b table = [] {
-    cv::Mat1b levels(1, 256);
-    std::iota(levels.begin(), levels.end(), std::uint8_t{0});
-    cv::Mat3b colors;
-    cv::applyColorMap(levels, colors, cv::COLORMAP_VIRIDIS);
-    return colors;
-  }();
-  const cv::Vec3b bgr = table(static_cast<int>(std::lround(255 * std::clamp(share, 0.0, 1.0))));
-  return std::uint32_t{bgr[2]} << 16 | std::uint32_t{bgr[1]} << 8 | bgr[0];
-}
-
-std::uint32_t TrackColors::rgb(int column) const {
-  const auto& value = values[column];
-  if (!value) return color_of(Role::text_dim);
-  return ramp_color(high > low ? (*value - low) / (high - low) : 0.5);
-}
-
-std::shared_ptr<const TrackColors> track_colors(const Inspection& inspection, Coloring coloring) {
-  if (coloring == Coloring::plane) return nullptr;
-  TrackColors colors{.coloring = coloring, .values = {}};
-  std::vector<double> known;
-  for (int column = 0; column < inspection.tracks->track_count(); ++column) {
-    colors.values.push_back(value_of(track_life(inspection, column), coloring));
-    if (colors.values.back()) known.push_back(*colors.values.back());
-  }
-  std::ranges::sort(known);
-  if (!known.empty())
-    for (const auto& [end, share] : {std::pair{&colors.low, 0.05}, {&colors.high, 0.95}})
-      *end = known[static_cast<std::size_t>(share * static_cast<double>(known.size() - 1))];
-  return std::make_shared<const TrackColors>(std::move(colors));
-}
-
-LegendRows legend_rows(const TrackColors& colors) {
-  const char* quantity = colors.coloring == Coloring::residual ? "residual"
-                         : colors.coloring == Coloring::depth  ? "depth"
-                                                               : "seen in";
-  if (std::ranges::none_of(colors.values, [](const auto& value) { return value.has_value(); }))
-    return {{Sign::disc, color_of(Role::text_dim), fmt::format("{} unknown", quantity)}};
-  const std::string low = text_of(colors.coloring, colors.low);
-  return {{Sign::disc, ramp_color(0), fmt::format("{} {}", quantity, low)},
-          {Sign::disc, ramp_color(1), text_of(colors.coloring, colors.high)}};
 }
 
 }  // namespace gpo

@@ -32,7 +32,7 @@ using LegendHits = std::vector<LegendHit>;
 
 using LegendRows = std::vector<LegendRow>;
 
-enum class Corner { top_left, bottom_left };
+enum class Corner { top_left, top_right, bottom_left, bottom_right };
 
 inline ImVec2 to_imgui(const Vector2d& point) {
   return {static_cast<float>(point.x()), static_cast<float>(point.y())};
@@ -65,6 +65,11 @@ void draw_legend_row(ImDrawList& list,
                      const RowIndent& indent,
                      std::uint32_t text_rgb = color_of(Role::text));
 
+/// Returns the place of a legend in a corner of the rectangle.
+ScreenRect legend_place(const ScreenRect& rect,
+                        Corner corner,
+                        const std::string& title,
+                        const LegendRows& rows);
 /// Draws a title (may be empty) and rows in a corner.
 void draw_legend(const Area& area, Corner corner, const std::string& title, const LegendRows& rows);
 
@@ -147,6 +152,7 @@ std::uint32_t viridis(double share);
 /// A number per track and its color. Immutable.
 struct TrackColors {
   Coloring coloring = Coloring::residual;
+  bool in_meters = false;                     ///< depths, which are else in plane distances d
   std::vector<std::optional<double>> values;  ///< by column; nullopt if unknown
   double low = 0, high = 0;                   ///< 5 % and 95 % quantile: ends of the color scale
 

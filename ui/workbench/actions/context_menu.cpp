@@ -45,6 +45,13 @@ std::string line_of_exclusion(const State& state, const Subject& at) {
   return excluded ? "" : fmt::format("exclude {}", at.track);
 }
 
+/// Returns the line if there are two points, picked or of tracks, and a result.
+std::string with_two_points(const State& state, const char* line) {
+  const Selection& selection = state.selection;
+  const bool two = selection.points_px.size() == 2 || selection.tracks.size() == 2;
+  return two && state.results.inspection ? line : "";
+}
+
 std::string line_of_removal(const State& state, const Subject& /*at*/) {
   return state.document.settings.mask.areas.empty() ? "" : "mask off";
 }
@@ -67,6 +74,16 @@ constexpr auto kEntries = std::to_array<ContextEntry>({
      [](const State&, const Subject& at) { return fmt::format("copy-track {}", at.track); }},
     {ContextKind::plane, "Make it the main plane", line_of_main_plane},
     {ContextKind::plane, "Put the cube here", line_of_cube},
+    {ContextKind::point, "Pick this point (Alt+click)",
+     [](const State&, const Subject& at) {
+       return fmt::format("pick {:.2f} {:.2f}", at.raw_px.x(), at.raw_px.y());
+     }},
+    {ContextKind::point, "Set the scale from two points ...",
+     [](const State& state, const Subject&) {
+       return with_two_points(state, "palette set-scale");
+     }},
+    {ContextKind::point, "Set the origin and x axis",
+     [](const State& state, const Subject&) { return with_two_points(state, "set-origin"); }},
     {ContextKind::number, "Copy the value",
      [](const State&, const Subject& at) { return copy_of(at.value); }},
     {ContextKind::number, "Copy with its uncertainty",
@@ -95,6 +112,12 @@ std::string as_argument(const std::string& text) {
   std::ostringstream quoted;
   quoted << std::quoted(text);
   return quoted.str();
+}
+
+ContextSubject point_subject(const Vector2d& raw_px) {
+  ContextSubject subject{.kind = ContextKind::point, .title = "Points for scale and origin"};
+  subject.raw_px = raw_px;
+  return subject;
 }
 
 ContextSubject track_subject(const Inspection& inspection, std::int64_t id) {

@@ -7,7 +7,7 @@
 namespace gpo {
 
 /// The kinds of things that have a context menu.
-enum class ContextKind { track, plane, number, frame, area };
+enum class ContextKind { track, plane, point, number, frame, area };
 
 /// The thing under the mouse when its context menu was opened.
 struct ContextSubject {
@@ -17,6 +17,7 @@ struct ContextSubject {
   int plane = 0;                           ///< number in the window, counts from 0
   std::optional<Vector3d> ray = {};        ///< from the reference camera to the plane's point
   std::string why_not_there = {};          ///< why there is no `ray`
+  Vector2d raw_px = Vector2d::Zero();      ///< the pixel of a point
   int frame = 0;                           ///< counts in the recording
   std::string value = {}, uncertain = {};  ///< texts of a number; `uncertain` with its uncertainty
 };
@@ -32,6 +33,9 @@ std::span<const ContextEntry> context_entries();
 
 /// Returns a text as one argument of a script's line.
 std::string as_argument(const std::string& text);
+
+/// The subject of a pixel of the current frame.
+ContextSubject point_subject(const Vector2d& raw_px);
 
 /// The subject of a track of the current inspection, with the reason for its rejection.
 ContextSubject track_subject(const Inspection& inspection, std::int64_t id);

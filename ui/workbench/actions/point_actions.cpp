@@ -89,6 +89,9 @@ void set_scale(State& state, const Arguments& arguments) {
     settings = with_setting(std::move(settings), "scale_points", point_pair(state, arguments, 1));
   }
   choose_points(state, std::move(settings));
+  say(state,
+      off ? "the scale is not from points; Ctrl+Z undoes it"
+          : "all lengths are in meters by these points; Ctrl+Z undoes it");
 }
 
 void set_origin(State& state, const Arguments& arguments) {
@@ -132,7 +135,7 @@ void add_point_actions(std::vector<Action>& table) {
             "Set the scale from two points",
             "Sets the metric scale by the distance [m] of two points: the picked ones (Alt+click), "
             "the two selected tracks, or pixels of the current frame; off: not from points"},
-           "LENGTH|off [X1 [Y1 [X2 [Y2]]]]",
+           "METERS|off [X1 [Y1 [X2 [Y2]]]]",
            set_scale);
   menu.add(
       {"set-origin",

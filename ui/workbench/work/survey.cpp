@@ -156,7 +156,12 @@ Scan::Scan(std::function<void()> changed)
 
 void Scan::want(std::shared_ptr<const Recording> recording, std::optional<Settings> settings) {
   const auto lock = job_.lock();
-  if (settings) settings->start = 0;
+  if (settings) {
+    settings->start = 0;
+    // They belong to one reference frame, see `change_settings`.
+    settings->exclude.clear();
+    settings->mask = {};
+  }
   if (!recording) settings.reset();
   if (recording == recording_ && settings == wanted_) return;
   job_.cancel();

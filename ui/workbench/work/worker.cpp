@@ -39,6 +39,7 @@ bool show_recording(WorkbenchState& state,
   if (!recording || recording == state.document.recording) return false;
   if (!recording->complete && needs_all(state, *recording)) return false;
   apply_recording(state, recording);
+  if (state.view.tour == 1) state.view.tour = 2;  // the first step is to open one
   state.results.calibration = published.calibration;
   survey.open(recording);
   if (!recording->complete) return false;
@@ -116,6 +117,8 @@ bool is_read_on(const WorkbenchState& state, const WorkerLink& link) {
 }
 
 bool scan_for_starts(WorkbenchState& state, WorkerLink& link, Scan& scan) {
+  // A scan that was switched on after something else was canceled has no results yet.
+  if (state.view.toggles.scan && !state.results.scan) link.survey_canceled = false;
   const bool wanted = state.view.toggles.scan && !link.survey_canceled && !is_read_on(state, link);
   if (!state.view.toggles.scan || !state.document.recording) {
     state.results.scan.reset();
@@ -181,10 +184,10 @@ bool cancel_report(WorkbenchState& state) {
 void cancel(WorkbenchState& state, WorkerLink& link, Worker& worker) {
   worker.cancel();
   link.reader->cancel();
-  link.survey_canceled = true;
   link.finding_start = false;
   const bool loading = std::exchange(link.loading, false) || link.reading.busy;
   const bool calibrating = std::exchange(link.calibrating, false);
+  link.survey_canceled = (!loading && !calibrating) || link.survey.busy || link.scan.busy;
   say(state,
       loading       ? "Opening canceled"
       : calibrating ? "Calibration canceled, nothing was saved"

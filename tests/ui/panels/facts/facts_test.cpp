@@ -132,8 +132,7 @@ TEST(Results, HaveUnitsAndSensibleDigits) {
   const Inspection inspection = inspected();
   const Rows rows = rows_of(&inspection);
   expect_values(rows,
-                {{"Status", "ok"},
-                 {"Inliers", "2 / 3"},
+                {{"Inliers", "2 / 3"},
                  {"Transfer RMS", "0.43 px"},
                  {"Iterations", "9"},
                  {"PNE", "0.315\u00b0"},
@@ -180,9 +179,6 @@ TEST(Results, ShowTheReasonOfAFailure) {
   inspection.initialization =
       std::make_shared<const Initialization>(failed("no parallax: the camera only rotated"));
   const Rows rows = rows_of(&inspection);
-  EXPECT_EQ(rows.at("Status").value, "failed");
-  EXPECT_EQ(rows.at("Status").color, Role::bad);
-  EXPECT_THAT(rows.at("Status").tooltip, HasSubstr("no parallax"));
   expect_dashes(rows, {"Transfer RMS", "ATE"}, "initialization failed");
 }
 

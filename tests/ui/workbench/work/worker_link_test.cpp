@@ -43,11 +43,32 @@ TEST_F(WorkerLinkTest, KeepsFirstFramesOfAVideoWhenReadingItIsCanceled) {
   EXPECT_EQ(state_.messages.text, "Opening canceled");
 }
 
+TEST_F(WorkerLinkTest, ScanSwitchedOnAfterACanceledOpeningRuns) {
+  open_and_settle("desk");
+  hold_ = true;
+  run_once("open long.mkv");
+  run_once("escape");
+  EXPECT_EQ(state_.messages.text, "Opening canceled");
+  hold_ = false;
+  run_once("scan on");
+  while (synchronize(), link_.busy()) std::this_thread::yield();
+  ASSERT_NE(state_.results.scan, nullptr);
+  EXPECT_TRUE(state_.results.scan->finished());
+}
+
 TEST_F(WorkerLinkTest, WaitsForTheWholeVideoIfTheWindowIsBehindItsFirstFrames) {
   state_.document.settings.start = 100;
   open_and_settle("long.mkv");
   EXPECT_EQ(state_.document.settings.start, 100);
   EXPECT_EQ(state_.frame_count(), 900);
+}
+
+TEST_F(WorkerLinkTest, OpeningARecordingCompletesTheFirstStepOfTheTour) {
+  state_.view.tour = 1;
+  open_and_settle("desk");
+  EXPECT_EQ(state_.view.tour, 2);
+  open_and_settle("long.mkv");
+  EXPECT_EQ(state_.view.tour, 2) << "only the first step";
 }
 
 TEST_F(WorkerLinkTest, ScansTheRecordingOnRequest) {

@@ -326,8 +326,10 @@ TEST(ScanInTheBackground, FindsAllStartsAndCachesThem) {
   scan.want(desk(), shorter);
   EXPECT_EQ(scan.latest()->of, 2);
   settle(scan);
-  scan.want(desk(), Settings{.start = 2, .frames = longer.frames});
-  EXPECT_EQ(scan.latest(), first) << "the start of the settings is ignored";
+  Settings of_one_start{.start = 2, .frames = longer.frames, .exclude = {17}};
+  of_one_start.mask.areas = {{.corners_raw_px = {{0, 0}, {100, 100}}}};
+  scan.want(desk(), of_one_start);
+  EXPECT_EQ(scan.latest(), first) << "start, excluded tracks and masks of the settings are ignored";
   EXPECT_FALSE(scan.status().busy);
   scan.want(nullptr, std::nullopt);
   EXPECT_EQ(scan.latest(), nullptr);
