@@ -62,7 +62,7 @@ TEST_P(PixelScale, VerdictsAndNormalsStayIfPixelsAndNoiseAreScaled) {
     }
   }
   EXPECT_GE(ready, windows / 2);
-  EXPECT_LE(changed, windows / 15);  // of twice as many pairs
+  EXPECT_LE(changed, windows / 15);  // there are twice as many pairs
   EXPECT_LT(median(turned_sigmas), 0.2);
 }
 
