@@ -11,6 +11,7 @@
 #   asan        all tests with the address and undefined-behavior sanitizers
 #   tsan        the tests that start threads, with the thread sanitizer
 #   monkey      many random inputs to the window
+#   first-steps a stranger's first steps in the real window, by mouse and keyboard
 #   hostile     opens small files that ask for much, with limits for memory and time, and simulates a live hour
 #   kills       kills the program while it writes
 #   interrupts  stops each command and the window with signals
@@ -27,7 +28,7 @@ set -uo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 source .ci/install.sh
 export JOBS=${JOBS:-$(nproc)} LIBGL_ALWAYS_SOFTWARE=1 GALLIUM_DRIVER=llvmpipe
-all=(nine monkey hostile kills interrupts browser fuzz asan tsan flags exports headers arm64 packages)
+all=(nine monkey first-steps hostile kills interrupts browser fuzz asan tsan flags exports headers arm64 packages)
 logs=$PWD/build/nightly
 kSkipped=77
 
@@ -72,6 +73,14 @@ monkey() {
   for seed in 1 2 3; do
     XDG_CACHE_HOME=$PWD/build/ci/test-output/cache GPO_MONKEY_SEED=$seed GPO_MONKEY_TURNS=5000 build/ci/tests/monkey_tests || return 1
   done
+}
+
+first-steps() {
+  install_packages "${build_packages[@]}" "${test_packages[@]}"
+  build_ci || return 1
+  local folder=$logs/first-steps here=$PWD
+  rm -rf "$folder" && mkdir -p "$folder" && cd "$folder" || return 1
+  "$here/tests/with_display.sh" 1280x720 "$here/tests/app/stranger_window.sh" "$here/build/ci/app/gpo-inspector"
 }
 
 # Without these programs, as in ./test.sh, the tests are skipped.
