@@ -173,7 +173,7 @@ TEST(Horizon, IsBentByTheLensAsByOpenCv) {
 }
 
 TEST(ImageMapping, UndistortsAsOpenCvDoes) {
-  const ImageMapping mapping{{10, 20}, 2, &kCamera};
+  const ImageMapping mapping{.origin = {10, 20}, .scale = 2, .undistorted = &kCamera};
   for (const Vector3d& ray : {Vector3d(-0.6, 0.45, 1), {0.01, -0.02, 1}, {0.5, 0.4, 1}}) {
     const Vector2d raw_px = project_with_opencv(kCamera, {}, ray);
     const Vector2d pinhole_px = (intrinsic_matrix(kCamera) * ray).hnormalized();
