@@ -127,6 +127,14 @@ std::string vector_text(const Vector3d& v, int digits) {
   return fmt::format("{:.{}f} {:.{}f} {:.{}f}", v.x(), digits, v.y(), digits, v.z(), digits);
 }
 
+/// Beyond a right angle a standard deviation of a rotation means nothing.
+std::string sigmas_text(const Vector3d& sigma_deg, int digits) {
+  const auto one = [&](int axis) {
+    return sigma_deg[axis] > 90 ? "undetermined" : fmt::format("{:.{}f}", sigma_deg[axis], digits);
+  };
+  return fmt::format("{} {} {} deg about the camera's axes", one(0), one(1), one(2));
+}
+
 struct RateSource {
   const char* name;
   std::uint32_t rgb;
@@ -208,11 +216,11 @@ std::string to_text(const SelfCalibration& calibration) {
 std::string to_yaml(const GyroscopeFit& fit, const Camera& camera, const std::string& source) {
   std::string text = fmt::format(
       "# gyroscope on its camera, from {} windows of {}\n"
-      "# rotation +- {} deg about the camera's axes, clock +- {:.2f} ms\n"
+      "# rotation +- {}, clock +- {:.2f} ms\n"
       "# bias {} +- {} rad/s\n",
       fit.windows,
       source,
-      vector_text(fit.rotation_sigma_deg, 3),
+      sigmas_text(fit.rotation_sigma_deg, 3),
       1e3 * fit.time_offset_sigma_s,
       vector_text(fit.bias_rad_s, 5),
       vector_text(fit.bias_sigma_rad_s, 5));
@@ -236,7 +244,7 @@ std::string to_text(const GyroscopeFit& fit, const Gyroscope& recorded) {
           vector_text(degrees(1) * so3_log(fit.R_gyro_camera), 2),
           rotation_between_deg(fit.R_gyro_camera, recorded.R_gyro_camera),
           axes(fit.R_gyro_camera)) +
-      row("  +-", "{} deg about the camera's axes", vector_text(fit.rotation_sigma_deg, 2)) +
+      row("  +-", "{}", sigmas_text(fit.rotation_sigma_deg, 2)) +
       row("clock",
           "{:+.2f} +- {:.2f} ms (gyroscope's minus camera's; the recording has {:+.2f} ms)",
           1e3 * fit.time_offset_s,

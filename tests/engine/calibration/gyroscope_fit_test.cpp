@@ -227,5 +227,13 @@ TEST(GyroscopeFit, NamesRatesOfAnotherRecording) {
               HasSubstr("the gyroscope does not fit the images: images and gyroscope turn"));
 }
 
+TEST(GyroscopeFit, CallsRotationsUndeterminedBeyondARightAngle) {
+  const GyroscopeFit fit{.rotation_sigma_deg = {0.5, 120, 2}};
+  EXPECT_THAT(to_text(fit, {}), HasSubstr("0.50 undetermined 2.00 deg about the camera's axes\n"));
+  EXPECT_THAT(
+      to_yaml(fit, Camera{}, "desk"),
+      HasSubstr("# rotation +- 0.500 undetermined 2.000 deg about the camera's axes, clock"));
+}
+
 }  // namespace
 }  // namespace gpo::test

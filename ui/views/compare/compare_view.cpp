@@ -68,7 +68,7 @@ double common_cube_side(CompareColumns columns, const Inspection& inspection, do
   return cube_side(*first->inspection, chosen) / model.unit * inspection.cube->unit;
 }
 
-/// Returns a box around all cubes in the shown image [px from its top-left corner].
+/// Returns a box around all cubes in the shown image [px].
 Eigen::AlignedBox2d cubes_box(CompareColumns columns, int frame, const ViewOptions& options) {
   Eigen::AlignedBox2d box;
   for (const Compared& column : columns) {
@@ -83,7 +83,8 @@ Eigen::AlignedBox2d cubes_box(CompareColumns columns, int frame, const ViewOptio
     for (const auto& cube : {estimated_cube(inspection, view.in_window(), size),
                              true_cube(inspection, view.in_window(), size)})
       for (const CubeEdge& edge : cube.value_or(CubeImage{}).edges)
-        for (const Vector2d& pixel : edge.raw_px) box.extend(to_screen(whole, pixel));
+        for (const Vector2d& pixel : edge.raw_px)
+          box.extend(to_screen(whole, pixel) - Vector2d::Constant(0.5));
   }
   return box;
 }

@@ -267,18 +267,16 @@ double covered_share(const ScreenRect& rect, const std::pair<ImVec2, ImVec2>& bo
   return both.isEmpty() || covered.volume() <= 0 ? 0 : both.volume() / covered.volume();
 }
 
-/// Returns how much a rectangle covers in some frames of the window: tracks, and cubes, of which
+/// Returns how much a rectangle covers in all frames of the window: tracks, and cubes, of which
 /// each counts as many tracks.
 double covered_by(const ScreenRect& rect, const Canvas& canvas) {
   constexpr double kTracksPerCube = 40;
-  constexpr int kFrames = 6;
   const Inspection& inspection = canvas.inspection;
   const Tracks& tracks = *inspection.tracks;
   const ViewToggles& show = canvas.options.show;
   const Eigen::AlignedBox2d box(rect.min, rect.min + rect.size);
   double covered = 0;
-  const int count = std::min(inspection.window->frame_count(), tracks.frame_count());
-  for (int i = 0; i < count; i += std::max(1, count / kFrames)) {
+  for (int i = 0; i < std::min(inspection.window->frame_count(), tracks.frame_count()); ++i) {
     for (int track = 0; show.tracks && track < tracks.track_count(); ++track)
       if (tracks.seen(i, track))
         covered += box.contains(to_screen(canvas.mapping, tracks.raw_px[i].col(track))) ? 1 : 0;
