@@ -228,7 +228,8 @@ TEST(GyroscopeFit, NamesRatesOfAnotherRecording) {
 }
 
 TEST(GyroscopeFit, CallsRotationsUndeterminedBeyondARightAngle) {
-  const GyroscopeFit fit{.rotation_sigma_deg = {0.5, 120, 2}};
+  GyroscopeFit fit;
+  fit.rotation_sigma_deg = {0.5, 120, 2};
   EXPECT_THAT(to_text(fit, {}), HasSubstr("0.50 undetermined 2.00 deg about the camera's axes\n"));
   EXPECT_THAT(
       to_yaml(fit, Camera{}, "desk"),
