@@ -25,7 +25,7 @@ build() {
   install_packages "${build_packages[@]}"
   mkdir -p "$here/build"
   echo "building, which takes some minutes the first time (log: $build_log)" >&2
-  if ! (cd "$here" && cmake --preset release && cmake --build --preset release) >"$build_log" 2>&1; then
+  if ! (cd "$here" && cmake --preset release && cmake --build --preset release --parallel "$(nproc)") >"$build_log" 2>&1; then
     tail -n 30 "$build_log" >&2
     exit 1
   fi
