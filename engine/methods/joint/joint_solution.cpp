@@ -23,6 +23,8 @@ constexpr int kMostIterations = 12;
 /// Then the velocities stay, because two smoothings may take turns.
 constexpr int kVelocityIterations = 5;
 constexpr double kSettled_rad = 2e-6;  // step of the normal
+/// A Newton step on the loss diverges if it multiplies the cost by more.
+constexpr double kMostRise = 1.5;
 /// Last step of a solution relative to its standard deviation: the noise and the weights that are
 /// estimated along with it never quite settle.
 constexpr double kSettledSigmas = 0.1;
@@ -66,13 +68,22 @@ void linearize(const Model& model, Curvature curvature, Iteration& at) {
       model.linearize(at.state, at.predictions, at.scales, curvature, std::move(at.normals));
 }
 
+/// The estimates before a step.
+struct Checkpoint {
+  State state;
+  Predictions predictions;
+  Scales scales;
+  double cost = 0;
+};
+
 /// Iterates Newton steps and estimates of the noise; false if a step is not determined or the watch
 /// stops it.
 bool converge(const Model& model, Iteration& at) {
   // Reweighting is safe far from the minimum, the curvature of the loss is fast near it. It may
-  // cycle where many errors are near the knee.
+  // cycle where many errors are near the knee, and diverge where it hardly determines an unknown.
   Curvature curvature = Curvature::of_weights;
   bool newton = model.options().huber;
+  std::optional<Checkpoint> before;  // the last step, if it was one on the loss
   PathNoise noise;
   const Normals& normals = at.normals;
   Priors priors;
@@ -80,6 +91,16 @@ bool converge(const Model& model, Iteration& at) {
   for (int k = 0; k < kMostIterations && !at.watch.stop_requested(); ++k) {
     linearize(model, curvature, at);
     priors = model.priors(at.state, at.scales, std::move(priors));
+    const double cost = normals.cost + priors.cost;
+    if (before && !(normals.in_front && cost <= kMostRise * before->cost)) {
+      at.state = std::move(before->state);
+      at.predictions = std::move(before->predictions);
+      at.scales = before->scales;
+      before.reset();
+      curvature = Curvature::of_weights;
+      newton = false;
+      continue;
+    }
     factor.compute(normals.A + priors.information);
     if (!normals.in_front || factor.info() != Eigen::Success) return false;
     const VectorXd gradient = normals.gradient + priors.gradient;
@@ -87,15 +108,16 @@ bool converge(const Model& model, Iteration& at) {
     if (!x.allFinite()) return false;
     add_to_trace(priors, at);
     constexpr double kMargin = 20;  // times the expected decrease, -gradient.x / 2
-    if (k > 1 && normals.cost + priors.cost + kMargin / 2 * gradient.dot(x) > at.most_cost)
-      return false;
+    if (k > 1 && cost + kMargin / 2 * gradient.dot(x) > at.most_cost) return false;
+    before.reset();
+    if (curvature == Curvature::of_loss) before = {at.state, at.predictions, at.scales, cost};
     at.state = model.moved(at.state, x, normals);
     if (curvature == Curvature::of_weights) noise = model.path_noise(normals, at.scales);
     if (k < kVelocityIterations) model.update_velocities(at.state, noise);
     model.predict(at.state, at.predictions);
     at.scales.sigma_px = noise_px(model, at.predictions);
     at.scales.reference_px = reference_noise_px(model, at.predictions, normals, at.scales);
-    at.watch.report(++at.solver.iterations, normals.cost + priors.cost);
+    at.watch.report(++at.solver.iterations, cost);
     const double step_rad = x.head<2>().norm();
     const bool shrinks = k > 0 && step_rad < 0.5 * at.last_step_rad;
     if (curvature == Curvature::of_loss && !shrinks) newton = false;

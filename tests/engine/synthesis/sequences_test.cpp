@@ -128,16 +128,18 @@ TEST(Sequences, DifferInSeedsDesksAndDisturbances) {
   EXPECT_EQ(textures.size(), 9U);
 }
 
-/// Inspects the first 20 frames of a companion with default settings, rendered with one ray a
-/// pixel.
-std::shared_ptr<const Inspection> inspect_start_of(const std::string& name) {
+/// Inspects the first frames of a companion, at most 20, rendered with one ray a pixel.
+std::shared_ptr<const Inspection> inspect_start_of(const std::string& name,
+                                                   const MethodOptions& options = {},
+                                                   int frames = 20) {
   Recipe recipe = sequence("companions/" + name);
   recipe.frame_count = 20;
   recipe.image.samples = 1;
   const fs::path folder = test_folder("out") / name;
   synthesize(recipe, folder);
   Settings settings;
-  settings.frames = 20;
+  settings.frames = frames;
+  settings.options.method_options = options;
   return Inspector(open_recording(folder.string())).inspect(settings);
 }
 
@@ -159,6 +161,14 @@ TEST(Companions, FloorAndWallsOfTheCornerAreFoundWithAnUncalibratedGyroscope) {
   EXPECT_LT((*result.bias_rad_s - recipe.gyroscope.bias).norm(), 0.004);
   EXPECT_NEAR(recipe.gyroscope.bias.norm(), 0.08, 0.005);  // EuRoC's
   EXPECT_FALSE(recipe.gyroscope.calibrated_bias);
+}
+
+TEST(Companions, JointModelSolvesTheCornerAlsoWhereAStepOnItsLossDiverges) {
+  MethodOptions latent;
+  latent.error = ErrorModel::latent;
+  const auto inspection = inspect_start_of("corner", latent, 18);
+  ASSERT_TRUE(inspection->initialization->ok) << inspection->initialization->reason;
+  EXPECT_LT(*inspection->evaluation->pne_deg, 0.2);
 }
 
 TEST(Companions, RubbleIsRefusedForLackOfAPlane) {
