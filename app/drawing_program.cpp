@@ -5,6 +5,7 @@
 
 int main(int argc, char** argv) {
   try {
+    gpo::hold_signals();
     return gpo::main_with_errors(argc, argv, gpo::all_commands());
   } catch (...) {
     return gpo::kBadInput;  // not even the error could be printed

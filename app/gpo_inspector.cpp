@@ -40,6 +40,7 @@ int run_drawing_program(char** argv) {
 
 int main(int argc, char** argv) {
   try {
+    gpo::hold_signals();
     const bool here = argc > 1 && runs_here(argv[1]);
     return here ? gpo::main_with_errors(argc, argv, kCommands) : run_drawing_program(argv);
   } catch (...) {

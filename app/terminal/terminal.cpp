@@ -64,6 +64,14 @@ class WithoutImageErrors : public std::streambuf {
   }
 };
 
+sigset_t stopping_signals() {
+  sigset_t signals;
+  sigemptyset(&signals);
+  sigaddset(&signals, SIGINT);
+  sigaddset(&signals, SIGTERM);
+  return signals;
+}
+
 }  // namespace
 
 bool is_standard_output(const fs::path& file) { return file == "-"; }
@@ -100,10 +108,12 @@ void quiet_libraries() {
   std::cerr.rdbuf(filter);
 }
 
-Interrupt::Interrupt() {
-  sigemptyset(&signals_);
-  sigaddset(&signals_, SIGINT);
-  sigaddset(&signals_, SIGTERM);
+void hold_signals() {
+  const sigset_t signals = stopping_signals();
+  pthread_sigmask(SIG_BLOCK, &signals, nullptr);
+}
+
+Interrupt::Interrupt() : signals_(stopping_signals()) {
   pthread_sigmask(SIG_BLOCK, &signals_, &mask_before_);
   waiter_ = std::jthread([this](const std::stop_token& end) { wait(end); });
 }

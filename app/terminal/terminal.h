@@ -38,6 +38,10 @@ void silence_libraries();
 /// level. Replaces the buffer of std::cerr: call it once, and only in a program of our own.
 void quiet_libraries();
 
+/// Holds SIGINT and SIGTERM back from now on; `Interrupt` takes them. One that comes after it,
+/// while the program exits, has no effect: the work is done.
+void hold_signals();
+
 /// Makes SIGINT and SIGTERM stop the work of this thread (StopScope). If the program runs for
 /// another 800 ms, for example in a system call on a slow disk, it removes unfinished files and
 /// ends the program with exit code 1; a second signal does so at once. Create it before other
@@ -55,7 +59,7 @@ class Interrupt {
  private:
   void wait(const std::stop_token& end);
 
-  sigset_t signals_{};
+  sigset_t signals_;
   sigset_t mask_before_{};
   std::stop_source source_;
   StopWatch watch_{.stop = source_.get_token()};
