@@ -88,12 +88,16 @@ Chart life_chart(const TrackLife& life) {
   return chart;
 }
 
-/// Returns the enlarged surroundings of a subpixel position, which is in the middle.
-cv::Mat patch_at(const cv::Mat& image, const Vector2d& raw_px) {
+/// Returns the enlarged surroundings of a subpixel position, which is in the middle, turned as the
+/// image is shown.
+cv::Mat patch_at(const cv::Mat& image, const Vector2d& raw_px, int quarter_turns) {
   cv::Mat patch;
   const Eigen::Vector2f at = raw_px.cast<float>();
   cv::getRectSubPix(image, {kPatch_px, kPatch_px}, {at.x(), at.y()}, patch);
   cv::resize(patch, patch, {}, kMagnification, kMagnification, cv::INTER_NEAREST);
+  constexpr std::array kCodes = {
+      cv::ROTATE_90_CLOCKWISE, cv::ROTATE_180, cv::ROTATE_90_COUNTERCLOCKWISE};
+  if (quarter_turns > 0) cv::rotate(patch, patch, kCodes[quarter_turns - 1]);
   return patch;
 }
 
@@ -108,7 +112,8 @@ void update(TrackPatch& patch, const PanelInput& input, const TrackFrame& frame)
   patch.frame = frame.frame;
   patch.middle_px = frame.raw_px;
   patch.empty = image.bgr.empty();
-  if (!patch.empty) patch.texture.upload(patch_at(image.bgr, frame.raw_px));
+  if (!patch.empty)
+    patch.texture.upload(patch_at(image.bgr, frame.raw_px, recording->quarter_turns));
 }
 
 void draw_patch(const TrackPatch& patch, const char* title, float scale) {

@@ -84,18 +84,21 @@ void draw_legend_row(ImDrawList& list,
   write_text(list, Font::small, {at.x + text_indent(row, indent.text), at.y}, row.text, text_rgb);
 }
 
+/// Lengths in a legend in a corner, at scale 1 [px].
+constexpr float kLegendPadding = 9, kLegendGap = 4, kLegendText = 22;
+
 ScreenRect legend_place(const ScreenRect& rect,
                         Corner corner,
                         const std::string& title,
                         const LegendRows& rows) {
-  const float s = overlay_scale(), padding = 9 * s, margin = 10 * s;
+  const float s = overlay_scale(), padding = kLegendPadding * s, margin = 10 * s;
   double width = text_width(Font::bold, title);
   for (const LegendRow& row : rows)
-    width = std::max(width, text_indent(row, 22 * s) + text_width(Font::small, row.text));
-  const float line = font(Font::small)->FontSize + 4 * s;
-  const float top = title.empty() ? 0 : font(Font::bold)->FontSize + 4 * s;
+    width = std::max(width, text_indent(row, kLegendText * s) + text_width(Font::small, row.text));
+  const float line = font(Font::small)->FontSize + kLegendGap * s;
+  const float top = title.empty() ? 0 : font(Font::bold)->FontSize + kLegendGap * s;
   const Vector2d size(width + 2 * padding,
-                      top + line * static_cast<float>(rows.size()) - 4 * s + 2 * padding);
+                      top + line * static_cast<float>(rows.size()) - kLegendGap * s + 2 * padding);
   const Vector2d far = rect.size - size - Vector2d::Constant(margin);
   const bool right = corner == Corner::top_right || corner == Corner::bottom_right;
   const bool bottom = corner == Corner::bottom_left || corner == Corner::bottom_right;
@@ -110,12 +113,12 @@ void draw_legend(const Area& area,
   const float s = overlay_scale();
   const ScreenRect place = legend_place(area.rect, corner, title, rows);
   draw_ground({area.list, place}, color_of(Role::border));
-  Vector2d at = place.min + Vector2d::Constant(9 * s);
+  Vector2d at = place.min + Vector2d::Constant(kLegendPadding * s);
   write_text(area.list, Font::bold, at, title);
-  if (!title.empty()) at.y() += font(Font::bold)->FontSize + 4 * s;
+  if (!title.empty()) at.y() += font(Font::bold)->FontSize + kLegendGap * s;
   for (const LegendRow& row : rows) {
-    draw_legend_row(area.list, to_imgui(at), row, {7 * s, 22 * s});
-    at.y() += font(Font::small)->FontSize + 4 * s;
+    draw_legend_row(area.list, to_imgui(at), row, {7 * s, kLegendText * s});
+    at.y() += font(Font::small)->FontSize + kLegendGap * s;
   }
 }
 

@@ -104,10 +104,15 @@ OrbitCamera through_camera(const Inspection& inspection, double aspect, int fram
   const int last = static_cast<int>(cameras.size()) - 1;
   const Pose& pose = cameras[std::clamp(frame - inspection.window->start, 0, last)];
   const Camera& lens = inspection.recording->camera;
-  const double half_height =
-      std::max(lens.height / (2 * lens.fy), lens.width / (2 * lens.fx) / aspect);
+  Vector2d half(lens.width / (2 * lens.fx), lens.height / (2 * lens.fy));
+  Vector3d up_c(0, -1, 0);
+  for (int turn = 0; turn < inspection.recording->quarter_turns; ++turn) {
+    half = half.reverse().eval();
+    up_c = Vector3d(up_c.y(), -up_c.x(), 0);
+  }
+  const double half_height = std::max(half.y(), half.x() / aspect);
   OrbitCamera camera;
-  camera.up = -pose.R_wc.col(1);
+  camera.up = pose.R_wc * up_c;
   camera.front = pose.R_wc.col(2);
   camera.pitch_deg = 0;
   camera.distance = plane_in_camera(inspection.initialization->plane, pose).distance;

@@ -160,6 +160,28 @@ TEST_F(SceneGeometry, ViewThroughACameraIsItsImage) {
   }
 }
 
+TEST_F(SceneGeometry, ViewThroughACameraIsTurnedLikeItsImage) {
+  const int start = inspection.window->start;
+  auto recording = std::make_shared<Recording>(*inspection.recording);
+  recording->camera.cx = (recording->camera.width - 1) / 2.0;
+  recording->camera.cy = (recording->camera.height - 1) / 2.0;
+  recording->camera.fy = recording->camera.fx;
+  inspection.recording = recording;
+  for (int turns = 0; turns < 4; ++turns) {
+    recording->quarter_turns = turns;
+    const ShownImage image(recording->camera, turns);
+    const Vector2d size = image.size();
+    const OrbitCamera camera =
+        scene_camera(inspection, 0.2, size.x() / size.y(), Viewpoint::camera, start + 3);
+    const ImageMapping mapping = map_image(image, {{0, 0}, size}, {}, true);
+    for (const MapPoint& point : inspection.initialization->points) {
+      const Vector3d c = to_camera(inspection.initialization->cameras[3], point.position);
+      const Vector2d in_image = to_screen(mapping, project(recording->camera, c));
+      EXPECT_LT((*on_screen(camera, point.position, {{0, 0}, size}) - in_image).norm(), 1e-4);
+    }
+  }
+}
+
 TEST_F(SceneGeometry, NiceLengthsAreOneTwoFive) {
   for (const auto& [most, nice] : {std::pair{0.07, 0.05}, {1.0, 1.0}, {4.9, 2.0}, {999.0, 500.0}})
     EXPECT_DOUBLE_EQ(nice_length(most), nice);
