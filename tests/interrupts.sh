@@ -140,6 +140,16 @@ for command in "${commands[@]}"; do
   echo "${words[0]} ${words[1]##*/}: at most $slowest ms"
 done
 
+# A signal after the output, while the program exits: the work is done.
+for ((i = 0; i < 6 * rounds; ++i)); do
+  result=0
+  start run sequences/desk --frames 30
+  until [ -s "$work/log" ] || ! kill -0 "$pid" 2>/dev/null; do sleep 0.002; done
+  kill -TERM "$pid" 2>/dev/null || true
+  wait "$pid" || result=$?
+  [ "$result" = 0 ] || fail "exit code $result after SIGTERM at the exit of run"
+done
+
 # A second process that waits for the same recipe.
 fresh
 start info sequences/orbit.yaml
