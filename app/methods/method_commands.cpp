@@ -157,7 +157,7 @@ void OwnMethods::add_shards(const std::vector<fs::path>& folders) {
   }
   for (const auto& [name, identity] : found) {
     if (name.find('/') != std::string::npos) continue;  // files for one recording
-    const auto fail = [name](const Window&, const Sources&, const Watch&) {
+    const auto fail = [name = name](const Window&, const Sources&, const Watch&) {
       return failed(name + ": known only from shards, which do not contain its command");
     };
     if (!table.contains(name))

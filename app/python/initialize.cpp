@@ -237,8 +237,8 @@ py::class_<Live> live_class(py::module_& module) {
                                        .least_tracks = least_tracks,
                                        .least_share = least_share};
              const Camera camera = camera_of(given_camera);
-             return std::make_unique<Live>(
-                 camera, options, LiveInitializer(camera, options, gyroscope_of(gyroscope)));
+             return std::unique_ptr<Live>(new Live{
+                 camera, options, LiveInitializer(camera, options, gyroscope_of(gyroscope))});
            }),
            py::arg("camera"),
            py::arg("gyroscope") = py::none(),

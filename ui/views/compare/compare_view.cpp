@@ -174,7 +174,8 @@ struct ComparedError {
   void draw(const Area& area, bool stacked) const {
     const auto& [list, third] = area;
     const double s = overlay_scale();
-    const auto write = [&](Font which, double x, double y, const std::string& line, Role role) {
+    const auto write = [&, &list = list, &third = third](
+                           Font which, double x, double y, const std::string& line, Role role) {
       write_text(list, which, third.min + Vector2d(x, y * s), line, color_of(role));
     };
     const double right = stacked ? 0 : name_width();
