@@ -2,7 +2,7 @@
 # test.sh and tests/*.sh.
 
 build_packages=(
-  g++ cmake ninja-build pkg-config
+  clang lld cmake ninja-build pkg-config
   libeigen3-dev libceres-dev libopencv-dev libopengv-dev libvtk9-dev
   libglfw3-dev libdecor-0-plugin-1-cairo libimgui-dev libcairo2-dev libstb-dev libglew-dev libgl-dev libegl-dev libgl1-mesa-dri libegl1
   libyaml-cpp-dev libtinyxml2-dev zlib1g-dev nlohmann-json3-dev libcli11-dev libfmt-dev
@@ -11,6 +11,7 @@ build_packages=(
 )
 python_packages=(python3-dev pybind11-dev python3-numpy)
 test_packages=(
+  g++  # compiles programs that link the installed library
   libgtest-dev libgmock-dev xvfb xdotool imagemagick x11-apps python3-xlib
   # bags written by ROS
   python3-rosbag python3-sensor-msgs python3-geometry-msgs python3-tf2-msgs python3-numpy python3-yaml
@@ -22,7 +23,7 @@ test_packages=(
 export_packages=(colmap assimp-utils)  # programs that read our exports; tests/nightly.sh
 nightly_packages=(chromium)  # opens a report; large, its test skips without it
 benchmark_packages=(libbenchmark-dev)
-sanitizer_packages=(clang libclang-rt-dev)  # tests/nightly.sh
+sanitizer_packages=(libclang-rt-dev)  # tests/nightly.sh
 
 # install_packages NAME... installs missing packages by apt, as root or with sudo. If it cannot, it prints the
 # command to type and exits with 2.

@@ -17,6 +17,7 @@
 #   interrupts  stops each command and the window with signals
 #   nine        all nine rendered recordings with every method, conversions of all cases, halves of calibrations
 #   browser     opens a report in Chromium and turns its scene by the mouse
+#   gcc         builds with GCC, the others use clang, with warnings as errors, and runs all tests
 #   flags       links a program to the library with compiler flags that change Eigen's alignment
 #   exports     COLMAP and assimp read our exports and compute the same numbers
 #   headers     compiles each header of the engine alone
@@ -28,7 +29,7 @@ set -uo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 source .ci/install.sh
 export JOBS=${JOBS:-$(nproc)} LIBGL_ALWAYS_SOFTWARE=1 GALLIUM_DRIVER=llvmpipe
-all=(nine monkey first-steps hostile kills interrupts browser fuzz asan tsan flags exports headers arm64 packages)
+all=(nine monkey first-steps hostile kills interrupts browser fuzz asan tsan gcc flags exports headers arm64 packages)
 logs=$PWD/build/nightly
 kSkipped=77
 
@@ -121,13 +122,21 @@ browser() {
   ctest --test-dir build/ci --output-on-failure -R ReportInChromium
 }
 
+# Readme and RunScript start the program of ./test.sh.
+gcc() {
+  install_packages "${build_packages[@]}" "${python_packages[@]}" "${test_packages[@]}"
+  cmake --preset ci -B build/gcc -DCMAKE_C_COMPILER=gcc -DCMAKE_CXX_COMPILER=g++ &&
+    cmake --build build/gcc --parallel "$JOBS" &&
+    ctest --test-dir build/gcc --output-on-failure -j "$((JOBS + 1))" -E '^(Readme|RunScript)$'
+}
+
 flags() {
-  install_packages "${build_packages[@]}"
+  install_packages "${build_packages[@]}" g++
   tests/flags/run.sh build/nightly/flags
 }
 
 headers() {
-  install_packages "${build_packages[@]}"
+  install_packages "${build_packages[@]}" g++
   find engine -name '*.h' ! -path 'engine/examples/*' -print0 | xargs -0 -P "$JOBS" -I{} sh -c \
     'echo "#include \"{}\"" | g++ -std=c++20 -Wall -Wextra -Werror -fsyntax-only -I. \
       -isystem /usr/include/eigen3 -isystem /usr/include/opencv4 -x c++ - || { echo "FAILED: {}"; exit 1; }'
