@@ -1,8 +1,7 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/inspection/inspection.h"
-
 #include "engine/base/error.h"
+#include "engine/inspection/inspection.h"
 
 #include <array>
 #include <cmath>

@@ -288,7 +288,8 @@ std::vector<TruthJump> truth_jumps(const Inspection& inspection) {
 std::vector<std::string> notes_of(const Inspection& inspection) {
   const Window& window = *inspection.window;
   auto notes = notes_of(truth_jumps(inspection), inspection.recording->timestamps_ns.front());
-  if (!inspection.gyroscope_note.empty()) notes.push_back(inspection.gyroscope_note);
+  for (const auto& note : {inspection.gyroscope_note, inspection.frames_note})
+    if (!note.empty()) notes.push_back(note);
   if (const auto missing = missing_plane(window, inspection.settings.options); !missing.empty())
     notes.push_back(fmt::format("{}; plane {} leads", missing, window.leader + 1));
   for (const auto& reason : {inspection.measured_scale ? inspection.measured_scale->reason : "",

@@ -102,7 +102,8 @@ struct Inspection {
   Settings settings;
   RotationSource rotations_used = RotationSource::gyro;  ///< never automatic
   std::string rotations_note;                            ///< see `ChosenRotations::note`
-  std::string gyroscope_note;  ///< why the gyroscope is not used as recorded; empty if it is
+  std::string gyroscope_note;    ///< why the gyroscope is not used as recorded; empty if it is
+  std::string frames_note = {};  ///< frames of the window that do not show the scene; empty: none
   std::optional<Eigen::Vector3d> gyroscope_bias_rad_s;  ///< subtracted from the rates
   std::shared_ptr<const Tracks> tracks;
   std::shared_ptr<const Window> window;

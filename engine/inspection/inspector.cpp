@@ -235,6 +235,7 @@ struct Inspector::Stages {
     inspection.rotations_used = rotations.value.chosen.source;
     inspection.rotations_note = rotations.value.chosen.note;
     inspection.gyroscope_note = rotations.value.note;
+    inspection.frames_note = frames_note(settings);
     inspection.tracks = tracks.value;
     inspection.truth = truth.value;
     inspection.window = std::make_shared<const Window>(std::move(window));
@@ -257,6 +258,16 @@ struct Inspector::Stages {
     };
     method = MethodChoice(std::make_shared<const Method>(std::move(bound)));
     return true;
+  }
+
+  std::string frames_note(const Settings& settings) const {
+    const auto& faults = longest_tracks[static_cast<std::size_t>(settings.tracking)].value.faults;
+    const auto in_window =
+        std::span(faults).first(std::min(faults.size(), static_cast<std::size_t>(settings.frames)));
+    const std::string faulty = text_of(in_window, settings.start);
+    if (faulty.empty()) return "";
+    if (is_searched_whole(*recording)) return "faulty frames: " + faulty;
+    return fmt::format("faulty frames: {}; `--start {}` leaves them out", faulty, settings.start);
   }
 
   Timing timing(const Settings& settings, double initialize_ms, double optimize_ms) const {

@@ -4,6 +4,7 @@
 
 #include "engine/inspection/inspection.h"
 #include "engine/pipeline/pipeline.h"
+#include "engine/recording/images/frame_faults.h"
 
 #include <chrono>
 
@@ -17,7 +18,8 @@ double milliseconds_since(std::chrono::steady_clock::time_point begin);
 /// Tracks of a window. They are made frame by frame, so a shorter window has their beginning.
 struct Tracked {
   std::shared_ptr<const Tracks> tracks;
-  std::vector<double> milliseconds;  ///< until each frame was done
+  std::vector<double> milliseconds;     ///< until each frame was done
+  std::vector<FrameFault> faults = {};  ///< one per frame; empty for the recording's own tracks
 };
 
 /// Returns the recording's own tracks.

@@ -72,13 +72,20 @@ std::optional<Tracked> followed_tracks(const Recording& recording,
     if (progress) progress("tracking", done, of);
   };
   ImagesAhead images(*recording.images, span.start, span.start + span.frames);
-  auto tracks = track_window([&](int frame) { return images.gray(frame); },
-                             recording.camera,
-                             span,
-                             tracking,
-                             {stop, report});
+  std::vector<cv::Mat> thumbnails(span.frames);
+  auto tracks = track_window(
+      [&](int frame) {
+        cv::Mat gray = images.gray(frame);
+        thumbnails[frame - span.start] = thumbnail_of(gray);
+        return gray;
+      },
+      recording.camera,
+      span,
+      tracking,
+      {stop, report});
   if (!tracks) return std::nullopt;
   tracked.tracks = std::make_shared<const Tracks>(std::move(*tracks));
+  tracked.faults = faults_of(thumbnails);
   return tracked;
 }
 

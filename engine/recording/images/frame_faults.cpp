@@ -19,7 +19,6 @@ namespace {
 
 constexpr std::size_t kMostScanned = 400;
 constexpr int kLeastFrames = 8;
-const cv::Size kThumbnail(64, 48);
 
 double difference(const cv::Mat& a, const cv::Mat& b) {
   return cv::norm(a, b, cv::NORM_L1) / static_cast<double>(a.total());
@@ -98,34 +97,26 @@ std::vector<cv::Mat> thumbnails_of(const FrameCache& images, int first, int coun
   std::vector<int> frames(count);
   std::iota(frames.begin(), frames.end(), first);
   for_each_image(images, frames, {}, [&](int frame, const cv::Mat& gray) {
-    cv::resize(gray, thumbnails[frame - first], kThumbnail, 0, 0, cv::INTER_AREA);
+    thumbnails[frame - first] = thumbnail_of(gray);
   });
   return thumbnails;
 }
 
-std::string numbers_of(std::span<const FrameFault> faults, FrameFault fault) {
+std::string numbers_of(std::span<const FrameFault> faults, FrameFault fault, int first) {
   constexpr std::size_t kShown = 6;
   std::vector<int> numbers;
   for (std::size_t i = 0; i < faults.size(); ++i)
-    if (faults[i] == fault) numbers.push_back(static_cast<int>(i));
+    if (faults[i] == fault) numbers.push_back(first + static_cast<int>(i));
   const std::size_t count = numbers.size();
   numbers.resize(std::min(count, kShown));
   return fmt::format("{} ({}{})", count, fmt::join(numbers, ", "), count > kShown ? ", ..." : "");
 }
 
 std::string note_of(std::span<const FrameFault> faults) {
-  constexpr std::pair<FrameFault, const char*> kKinds[] = {
-      {FrameFault::repeated, "repeat the image before"},
-      {FrameFault::black, "are black"},
-      {FrameFault::flash, "are far brighter or darker than their neighbors"}};
-  std::vector<std::string> parts;
-  for (const auto& [fault, meaning] : kKinds)
-    if (std::ranges::count(faults, fault) > 0)
-      parts.push_back(fmt::format("{} {}", numbers_of(faults, fault), meaning));
   return fmt::format("{} of {} frames are left out: {}",
                      std::ssize(faults) - std::ranges::count(faults, FrameFault::none),
                      faults.size(),
-                     fmt::join(parts, ", "));
+                     text_of(faults));
 }
 
 template <class Value>
@@ -149,10 +140,32 @@ std::vector<FrameFault> faults_of(std::span<const cv::Mat> thumbnails) {
   return faults;
 }
 
+cv::Mat thumbnail_of(const cv::Mat& gray) {
+  cv::Mat small;
+  cv::resize(gray, small, {64, 48}, 0, 0, cv::INTER_AREA);
+  return small;
+}
+
+std::string text_of(std::span<const FrameFault> faults, int first) {
+  constexpr std::pair<FrameFault, const char*> kKinds[] = {
+      {FrameFault::repeated, "repeat the image before"},
+      {FrameFault::black, "are black"},
+      {FrameFault::flash, "are far brighter or darker than their neighbors"}};
+  std::vector<std::string> parts;
+  for (const auto& [fault, meaning] : kKinds)
+    if (std::ranges::count(faults, fault) > 0)
+      parts.push_back(fmt::format("{} {}", numbers_of(faults, fault, first), meaning));
+  return fmt::format("{}", fmt::join(parts, ", "));
+}
+
+bool is_searched_whole(const Recording& recording) {
+  return recording.timestamps_ns.size() <= kMostScanned;
+}
+
 void leave_out_faulty_frames(Recording& recording, const SearchedFrames& searched) {
   const std::size_t all = recording.timestamps_ns.size();
   if (!recording.images || !recording.tracks.empty() || all == 0) return;
-  const bool whole = all <= kMostScanned;
+  const bool whole = is_searched_whole(recording);
   const std::size_t first = whole ? 0 : std::min<std::size_t>(std::max(searched.first, 0), all - 1);
   const std::size_t count =
       whole ? all : std::min<std::size_t>(std::max(searched.count, 0), all - first);

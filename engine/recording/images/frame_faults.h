@@ -17,6 +17,15 @@ enum class FrameFault { none, repeated, black, flash };
 /// around it, which agree.
 std::vector<FrameFault> faults_of(std::span<const cv::Mat> thumbnails);
 
+/// Returns a small copy of a gray image for `faults_of`.
+cv::Mat thumbnail_of(const cv::Mat& gray);
+
+/// Names frames with faults for people: "1 (7) are black". `first` is the number of the first one.
+std::string text_of(std::span<const FrameFault> faults, int first = 0);
+
+/// Returns whether `leave_out_faulty_frames` searches all frames.
+bool is_searched_whole(const Recording& recording);
+
 /// Frames of a long recording that a command uses, and as many after them: they may replace others.
 struct SearchedFrames {
   int first = 0;

@@ -315,5 +315,26 @@ TEST(Inspector, ReportsInputThatARecordingLacks) {
       "exclude: track 9999 is not in the window, which has tracks 0 to " + std::to_string(last));
 }
 
+TEST(Inspector, NamesFaultyFramesOfAWindowInTheMiddleOfALongRecording) {
+  constexpr int kFrames = 500, kBlack = 412;
+  Recording longer = *desk();
+  const int count = longer.frame_count();
+  for (int i = count; i < kFrames; ++i)
+    longer.timestamps_ns.push_back(longer.timestamps_ns.back() + 50'000'000);
+  longer.gyroscope.reset();
+  longer.truth.reset();
+  longer.board.reset();
+  longer.images = std::make_shared<const FrameCache>(kFrames, [=](int i) {
+    const cv::Mat image = desk()->images->bgr(i % count);
+    return i == kBlack ? cv::Mat(0 * image) : image;
+  });
+  Inspector inspector(std::make_shared<const Recording>(std::move(longer)));
+  const auto note_at = [&](int start) {
+    return inspector.inspect({.start = start, .frames = 12})->frames_note;
+  };
+  EXPECT_EQ(note_at(count), "");
+  EXPECT_EQ(note_at(kBlack - 6), "faulty frames: 1 (412) are black; `--start 406` leaves them out");
+}
+
 }  // namespace
 }  // namespace gpo::test
