@@ -238,6 +238,14 @@ void join_accelerations(BagContents& contents, const Eigen::Matrix3d& R_gyro_acc
                                    1e-9 * static_cast<double>(longest_ns)));
 }
 
+/// Messages of some encodings store the frame behind the image.
+std::string camera_frame_of(const Bag& bag, const Image& image) {
+  if (!image.header.frame_id.empty()) return image.header.frame_id;
+  const auto header =
+      read_header(bag.read(image.message, kWholeMessage), bag.topics[image.message.topic].encoding);
+  return header ? header->frame_id : "";
+}
+
 BagContents read_contents(const Bag& bag, const TopicRoles& roles, const ReadProgress& progress) {
   Reading reading{bag};
   for (const BagMessage& message : bag.messages) {
@@ -263,7 +271,7 @@ BagContents read_contents(const Bag& bag, const TopicRoles& roles, const ReadPro
     contents.image_times_ns.push_back(image.header.stamp_ns);
     contents.images.push_back(image.message);
   }
-  contents.camera_frame = reading.images.front().header.frame_id;
+  contents.camera_frame = camera_frame_of(bag, reading.images.front());
   if (reading.some_without_stamp)
     contents.notes.emplace_back("using the times of recording for messages without time stamps");
   return std::move(reading.contents);

@@ -288,6 +288,19 @@ std::size_t schema_of(std::string_view type) {
   return kSchemas.size();
 }
 
+/// Returns an image message with its time alone, from the first bytes of the stored one: official
+/// writers store the time before the image, protobuf's store the frame behind it. nullopt if the
+/// time is not in these bytes.
+std::optional<std::string> converted_time(std::string_view beginning, MessageEncoding encoding) {
+  MessageHeader header;
+  if (encoding == MessageEncoding::protobuf)
+    header.stamp_ns = ProtobufMessage(beginning).time_ns();
+  else if (encoding != MessageEncoding::json)
+    header.stamp_ns = RosMessage(beginning, encoding).time_ns();
+  if (header.stamp_ns == 0) return std::nullopt;
+  return compressed_image_bytes(header, "", MessageEncoding::cdr);
+}
+
 std::optional<std::string> converted(auto source, std::size_t schema) {
   if (!source.ok()) return std::nullopt;
   std::string bytes = schema == 0   ? image_file(source)
@@ -332,7 +345,11 @@ Bag open_recorded_bag(const BagFiles& found, const ReadProgress& progress) {
   bag.read = [stored, file = bag.file, read = std::move(bag.read)](const BagMessage& message,
                                                                    std::uint64_t most_bytes) {
     const BagTopic& topic = stored[message.topic];
-    if (schema_of(topic.type) == kSchemas.size()) return read(message, most_bytes);
+    const std::size_t schema = schema_of(topic.type);
+    if (schema == kSchemas.size()) return read(message, most_bytes);
+    if (is_image_type(kSchemas[schema].ros_type) && most_bytes < kWholeMessage)
+      if (auto header = converted_time(read(message, most_bytes), topic.encoding))
+        return *std::move(header);
     auto bytes = converted_foxglove(read(message, kWholeMessage), topic.type, topic.encoding);
     if (!bytes) refuse(file, "{}: broken message, expected {}", topic.name, topic.type);
     if (bytes->size() > most_bytes) bytes->resize(most_bytes);

@@ -63,9 +63,7 @@ std::string time_json(std::int64_t ns) {
       R"("timestamp": {{"sec": {}, "nsec": {}}})", ns / 1'000'000'000, ns % 1'000'000'000);
 }
 
-std::string png_of(int value) {
-  return encode_png(cv::Mat(48, 64, CV_8UC1, cv::Scalar(value)));
-}
+std::string png_of(int value) { return encode_png(cv::Mat(48, 64, CV_8UC1, cv::Scalar(value))); }
 
 const std::vector<double> kK = {60, 0, 31, 0, 61, 23, 0, 0, 1};
 const std::vector<double> kP = {60, 0, 31, 0, 0, 61, 23, 0, 0, 0, 1, 0};
@@ -178,6 +176,24 @@ TEST_P(Foxglove, IsRefusedWithTheTopicIfAMessageIsBroken) {
   folder.write("a.mcap", mcap.finished());
   EXPECT_THAT(error(),
               HasSubstr("a.mcap: /camera: broken message, expected foxglove.CompressedImage"));
+}
+
+using FoxgloveImages = RecordingFolder;
+
+TEST_F(FoxgloveImages, AreReadAtOpeningOnlyUpToTheirTimes) {
+  const std::string data(10'000, 'p');
+  PlainMcap mcap("protobuf");
+  mcap.channel(1, "/camera", "foxglove.CompressedImage");
+  for (int i = 0; i < 3; ++i)
+    mcap.message(1, 5, timestamp(kTime_ns + i) + delimited(2, data) + delimited(4, "cam"));
+  folder.write("a.mcap", mcap.finished());
+  const Bag bag = open_recorded_bag(find_bag_files(folder.path() / "a.mcap"), {});
+  EXPECT_LT(bag.read(bag.messages[1], kMostSmallBytes).size(), 100U);
+  EXPECT_GT(bag.read(bag.messages[1], kWholeMessage).size(), data.size());
+  const BagContents contents = read_contents(bag, topic_roles(bag, {}), {});
+  EXPECT_EQ(contents.image_times_ns,
+            (std::vector<std::int64_t>{kTime_ns, kTime_ns + 1, kTime_ns + 2}));
+  EXPECT_EQ(contents.camera_frame, "cam");
 }
 
 TEST(FoxgloveRawImage, IsConvertedInItsEncoding) {
