@@ -9,6 +9,7 @@
 
 #include <cerrno>
 #include <filesystem>
+#include <limits>
 
 #include <gmock/gmock.h>
 #include <unistd.h>
@@ -306,6 +307,21 @@ TEST(FrameSpool, ReturnsItsImagesAndLeavesNoFile) {
     for (int i = 0; i < 3; ++i) EXPECT_EQ(difference(live.images->bgr(i), images[i]), 0);
   }
   EXPECT_TRUE(fs::is_empty(folder));
+}
+
+TEST(Player, SurvivesTimesThatAreCenturiesApart) {
+  auto recording = std::make_shared<Recording>(*recording_of(moving_images(2, kSize)));
+  recording->timestamps_ns = {0, std::numeric_limits<std::int64_t>::max()};
+  constexpr std::int64_t kNow_ns = 2'000'000'000'000'000'000;
+  std::int64_t due_ns = 0;
+  const LiveClock clock{[] { return kNow_ns; },
+                        [&](std::int64_t time_ns, const std::stop_token&) { due_ns = time_ns; }};
+  const SourceContext context{.clock = clock, .stop = {}, .interrupted = {}};
+  const OpenSource source = open_player({"a.mp4", recording}, context);
+  EXPECT_TRUE(source.read());
+  EXPECT_EQ(due_ns, kNow_ns);
+  EXPECT_TRUE(source.read());
+  EXPECT_GT(due_ns, kNow_ns);
 }
 
 }  // namespace

@@ -82,11 +82,13 @@ OpenSource open_player(const SourceAddress& address, const SourceContext& contex
   if (!recording || !recording->images)
     refuse(address.text, "has no images; choose a video or a recording with images");
   const std::int64_t begin_ns = context.clock.now_ns();
+  constexpr std::int64_t kLongest_ns = 366LL * 24 * 3600 * 1'000'000'000;  // broken times
   return {.device = "",
           .read = [=, next = std::make_shared<int>(0)]() -> std::optional<TimedImage> {
             if (*next >= recording->frame_count()) return std::nullopt;
             const std::int64_t time_ns = recording->timestamps_ns[*next];
-            const std::int64_t due_ns = begin_ns + time_ns - recording->timestamps_ns.front();
+            const std::int64_t elapsed_ns = time_ns - recording->timestamps_ns.front();
+            const std::int64_t due_ns = begin_ns + std::min(elapsed_ns, kLongest_ns);
             const cv::Mat bgr = recording->images->bgr(*next);
             context.clock.wait_until(due_ns, context.stop);
             if (context.stop.stop_requested()) return std::nullopt;
