@@ -139,7 +139,7 @@ ordered_json planes_json(const Inspection& inspection) {
     if (const auto name = plane_name(inspection, number)) {
       plane["name"] = name->name;
       plane["tilt_deg"] = name->tilt_deg;
-      plane["tilt_sigma_deg"] = name->sigma_deg;
+      plane["tilt_sigma_deg"] = optional_json(name->sigma_deg);
     }
     plane["share"] = static_cast<double>(ids.size()) / window.track_count();
     plane["tracks"] = ids;

@@ -87,12 +87,13 @@ std::string planes_text(const Inspection& inspection) {
   for (int k = 0; k < std::max<int>(1, static_cast<int>(inspection.window->planes.size())); ++k) {
     const auto name = plane_name(inspection, k);
     if (!name) continue;
-    text += fmt::format("{}{} {} ({:.1f} +- {:.1f} deg from up)",
+    const auto sigma = name->sigma_deg ? fmt::format(" +- {:.1f}", *name->sigma_deg) : "";
+    text += fmt::format("{}{} {} ({:.1f}{} deg from up)",
                         text.empty() ? "" : ", ",
                         k + 1,
                         name->name,
                         name->tilt_deg,
-                        name->sigma_deg);
+                        sigma);
   }
   return text.empty() ? "" : row("planes", text);
 }

@@ -18,24 +18,26 @@ constexpr double kMostSigmaDeg = 15;  // for a tilt that gives a name
 constexpr double kLevelDeg = 5;       // floors and furniture are not more level than that
 constexpr double kSameHeight = 0.95;  // share of the floor's depth: a carpet, not a table
 
-double normal_sigma_deg(const Initialization& result, const PlaneEstimate& plane) {
-  if (plane.normal_covariance) return degrees(std::sqrt(plane.normal_covariance->trace()));
-  return result.uncertainty ? result.uncertainty->normal_sigma_deg : 0;
+/// nullopt if the method gives none for this plane: that of the main plane would be too small.
+std::optional<double> normal_sigma_deg(const PlaneEstimate& plane) {
+  if (!plane.normal_covariance) return std::nullopt;
+  return degrees(std::sqrt(plane.normal_covariance->trace()));
 }
 
 std::vector<PlaneEstimate> found_planes(const Inspection& inspection) {
   const Initialization& result = *inspection.initialization;
   if (!result.planes.empty()) return result.planes;
-  return {PlaneEstimate{.number = inspection.window->leader, .plane = result.plane}};
+  PlaneEstimate only{.number = inspection.window->leader, .plane = result.plane};
+  if (result.uncertainty) only.normal_covariance = result.uncertainty->normal_covariance;
+  return {only};
 }
 
-PlaneName named(const Initialization& result,
-                const PlaneEstimate& plane,
-                const InertialAlignment& inertial) {
+PlaneName named(const PlaneEstimate& plane, const InertialAlignment& inertial) {
   PlaneName found;
   found.tilt_deg = angle_deg(plane.plane.normal, Eigen::Vector3d(-inertial.gravity_m_s2));
-  found.sigma_deg = std::hypot(normal_sigma_deg(result, plane), inertial.gravity_sigma_deg);
-  const double within = std::max(kLevelDeg, 2 * found.sigma_deg);
+  if (const auto of_normal = normal_sigma_deg(plane))
+    found.sigma_deg = std::hypot(*of_normal, inertial.gravity_sigma_deg);
+  const double within = std::max(kLevelDeg, 2 * found.sigma_deg.value_or(0));
   const auto near = [&](double tilt_deg) { return std::abs(found.tilt_deg - tilt_deg) <= within; };
   found.name = near(0) ? "floor" : near(180) ? "ceiling" : near(90) ? "wall" : "slanted";
   return found;
@@ -94,8 +96,8 @@ std::optional<PlaneName> plane_name(const Inspection& inspection, int number) {
   std::optional<PlaneName> found;
   double depth = 0, deepest = 0;
   for (const PlaneEstimate& plane : found_planes(inspection)) {
-    const PlaneName name = named(result, plane, *inspection.inertial);
-    if (name.sigma_deg > kMostSigmaDeg) continue;
+    const PlaneName name = named(plane, *inspection.inertial);
+    if (name.sigma_deg.value_or(0) > kMostSigmaDeg) continue;
     if (name.name == "floor") deepest = std::max(deepest, plane.plane.distance);
     if (plane.number != number) continue;
     found = name;

@@ -13,8 +13,10 @@ struct PlaneName {
   /// floor: level, below the cameras, and the lowest such plane of the window; table: level, above
   /// the floor; ceiling: level, above the cameras; wall: upright; slanted.
   std::string name;
-  double tilt_deg = 0;   ///< angle of its normal (towards the cameras) from up: 0 floor, 90 wall
-  double sigma_deg = 0;  ///< uncertainty of the tilt (1 sigma), from the normal and from gravity
+  double tilt_deg = 0;  ///< angle of its normal (towards the cameras) from up: 0 floor, 90 wall
+  /// Uncertainty of the tilt (1 sigma), from the normal and from gravity; nullopt: the method gives
+  /// none for this plane.
+  std::optional<double> sigma_deg = std::nullopt;
 };
 
 /// Returns the name of a plane by its number in the window; nullopt if gravity or the plane is

@@ -67,7 +67,10 @@ ResultGroup gravity_group(const Inspection& inspection, double cube_side) {
       group.rows.push_back(
           {.label = fmt::format("Plane {}", k + 1),
            .value = name->name,
-           .note = fmt::format("{} {}", angle_text(name->tilt_deg), sigma_text(name->sigma_deg)),
+           .note =
+               name->sigma_deg
+                   ? fmt::format("{} {}", angle_text(name->tilt_deg), sigma_text(*name->sigma_deg))
+                   : angle_text(name->tilt_deg),
            .tooltip = "Angle between the plane's normal and up, with its standard deviation: "
                       "0\u00b0 floor or table, 90\u00b0 wall, 180\u00b0 ceiling. The lowest level "
                       "plane is called the floor"});

@@ -84,7 +84,7 @@ void add_planes(Numbers& numbers, const Inspection& inspection) {
     if (const auto name = plane_name(inspection, k))
       numbers.add(fmt::format("tilt of plane {}", k + 1),
                   fmt::format("{:.2f} deg from up", name->tilt_deg),
-                  text_of_sigma(name->sigma_deg),
+                  name->sigma_deg ? text_of_sigma(*name->sigma_deg) : "unknown",
                   name->name);
 }
 

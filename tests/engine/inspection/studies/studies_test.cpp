@@ -112,7 +112,9 @@ Inspection of_planes(const std::vector<Plane>& planes, double gravity_sigma_deg 
   result->ok = true;
   result->plane = planes.front();
   for (int k = 0; k < static_cast<int>(planes.size()); ++k)
-    result->planes.push_back({.number = k, .plane = planes[k]});
+    result->planes.push_back({.number = k,
+                              .plane = planes[k],
+                              .normal_covariance = Eigen::Matrix3d(Eigen::Matrix3d::Zero())});
   window->planes.resize(planes.size());
   inspection.initialization = result;
   inspection.window = window;
@@ -142,10 +144,21 @@ TEST(PlaneName, FollowsFromNormalAndGravityWithWiderLimitsIfUncertain) {
   for (int k = 0; k < 6; ++k) EXPECT_EQ(name_of(room, k), names[k]) << k;
   EXPECT_EQ(plane_title(room, 2), "plane 3 (table)");
   EXPECT_NEAR(plane_name(room, 0)->tilt_deg, 88, 1e-9);
-  EXPECT_NEAR(plane_name(room, 0)->sigma_deg, 0.5, 1e-9);
+  EXPECT_NEAR(plane_name(room, 0)->sigma_deg.value(), 0.5, 1e-9);
   EXPECT_EQ(name_of(of_planes({{tilted(12), 1}}, 1), 0), "slanted");
   EXPECT_EQ(name_of(of_planes({{tilted(12), 1}}, 7), 0), "floor");
   EXPECT_EQ(name_of(of_planes({{tilted(12), 1}}, 16), 0), "");
+}
+
+TEST(PlaneName, HasNoUncertaintyWhereTheMethodGivesNoneForThePlane) {
+  Inspection room = of_planes({{tilted(1), 1.0}, {tilted(91), 1.2}});
+  auto result = std::make_shared<Initialization>(*room.initialization);
+  result->planes[1].normal_covariance.reset();
+  result->uncertainty.emplace().normal_sigma_deg = 0.1;
+  room.initialization = result;
+  EXPECT_EQ(name_of(room, 1), "wall");
+  EXPECT_TRUE(plane_name(room, 0)->sigma_deg);
+  EXPECT_FALSE(plane_name(room, 1)->sigma_deg);
 }
 
 TEST(PlaneName, UsesTheOnlyPlaneOfAMethodAndNeedsGravity) {
