@@ -257,7 +257,8 @@ std::pair<Outcome, double> timed(const std::function<Outcome()>& run, double bou
   }
 }
 
-void expect_bounded(const std::vector<Hostile>& inputs, const RunBounds& bounds) {
+void expect_bounded(const std::vector<Hostile>& inputs, RunBounds bounds) {
+  bounds.seconds *= GPO_SLOWDOWN;  // of sanitizers
   const bool own_process = std::getenv("GPO_HOSTILE") != nullptr;
   for (const auto& [name, arguments, message, write] : inputs) {
     SCOPED_TRACE(name);

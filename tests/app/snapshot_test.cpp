@@ -265,6 +265,16 @@ TEST_F(Script, StopsAtTheFirstInvalidLine) {
   EXPECT_THAT(program("snapshot --script no/such/script").err, HasSubstr("no/such/script"));
 }
 
+TEST_F(Script, StopsAtASessionWhoseRecordingHasMoved) {
+  ASSERT_EQ(run("save-session " + in("s.json") + "\n", kDesk).exit_code, 0);
+  auto session = read_json(in("s.json"));
+  session["recording"] = "/no/such/desk";
+  write_file(in("moved.json"), session.dump());
+  expect_refused(run("open " + in("moved.json") + "\nexport result " + in("r.json") + "\n", kDesk),
+                 "script.txt:1: /no/such/desk has moved. Open it at its new location");
+  EXPECT_FALSE(fs::exists(in("r.json")));
+}
+
 TEST_F(Script, ReportsWhyAShortWindowFails) {
   const Outcome outcome = run("set frames 8\nexport result " + in("a.json") + "\n",
                               GPO_SOURCE_DIR "/sequences/low-parallax.yaml");

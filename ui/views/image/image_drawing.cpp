@@ -174,14 +174,16 @@ void draw_part(const ImageCanvas& canvas, const ImageTexture& image, const Trian
     }
 }
 
-std::uint32_t cube_color(const CubeAnchor& anchor) {
-  return anchor.plane ? plane_color(*anchor.plane) : color_of(Role::cube_base);
+std::uint32_t cube_color(const CubeAnchor& anchor, const Window& window) {
+  const int plane = anchor.plane.value_or(window.leader);
+  return plane == 0 ? color_of(Role::cube_base) : plane_color(plane);
 }
 
-std::uint32_t cube_face_color(const CubeAnchor& anchor) {
+std::uint32_t cube_face_color(const CubeAnchor& anchor, const Window& window) {
   constexpr double kLight = 0.5;  // share of white
-  const std::uint32_t main = color_of(Role::cube_face);
-  return anchor.plane ? mixed_rgb(plane_color(*anchor.plane), 0xFFFFFF, kLight) : main;
+  const int plane = anchor.plane.value_or(window.leader);
+  if (plane == 0) return color_of(Role::cube_face);
+  return mixed_rgb(plane_color(plane), 0xFFFFFF, kLight);
 }
 
 void draw_wireframe(const ImageCanvas& canvas, const CubeImage& cube, std::uint32_t rgb) {

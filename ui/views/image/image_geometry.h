@@ -125,10 +125,10 @@ void draw_image(const ImageCanvas& canvas, ImageTexture* image);
 /// Draws the part of the image within a triangle.
 void draw_part(const ImageCanvas& canvas, const ImageTexture& image, const Triangle& triangle);
 
-/// Returns the color of a cube's edges on its plane.
-std::uint32_t cube_color(const CubeAnchor& anchor);
+/// Returns the color of a cube's edges on its plane: that of the plane.
+std::uint32_t cube_color(const CubeAnchor& anchor, const Window& window);
 /// Returns the color of its faces.
-std::uint32_t cube_face_color(const CubeAnchor& anchor);
+std::uint32_t cube_face_color(const CubeAnchor& anchor, const Window& window);
 
 /// Draws only edges, those of the base in `rgb`; those behind the cube are thin.
 void draw_wireframe(const ImageCanvas& canvas, const CubeImage& cube, std::uint32_t rgb);

@@ -109,8 +109,8 @@ void draw_standing(const Canvas& canvas, const CubeImage& cube, const CubeAnchor
   draw_body(canvas,
             {.cube = cube,
              .rings = contact_shadow(canvas.inspection, canvas.frame, anchor, side),
-             .edges = cube_color(anchor),
-             .faces = cube_face_color(anchor)},
+             .edges = cube_color(anchor, *canvas.inspection.window),
+             .faces = cube_face_color(anchor, *canvas.inspection.window)},
             model != nullptr);
   if (model != nullptr) {
     const auto corners = cube_corners(anchor, side);
@@ -131,7 +131,7 @@ void draw_cube(const Canvas& canvas, const CubeAnchor& anchor) {
   if (main && options.show.truth)
     if (const auto truth = true_cube(canvas.inspection, canvas.frame, canvas.cube_size()))
       draw_true_cube(canvas, *truth);
-  if (!body) draw_wireframe(canvas, cube, cube_color(anchor));
+  if (!body) draw_wireframe(canvas, cube, cube_color(anchor, *canvas.inspection.window));
 }
 
 void draw_cubes(const Canvas& canvas) {
@@ -198,10 +198,10 @@ LegendRows legend_rows(const Canvas& canvas) {
   if (!options.show.cube) return rows;
   const bool truth = true_cube(inspection, canvas.frame, canvas.cube_size()).has_value();
   if (inspection.cube)
-    add(Sign::square,
-        Role::cube_base,
-        options.model ? "model on the estimated plane" : "cube on the estimated plane",
-        "cube");
+    rows.push_back({Sign::square,
+                    cube_color({}, *inspection.window),
+                    options.model ? "model on the estimated plane" : "cube on the estimated plane",
+                    "cube"});
   if (!options.model_error.empty()) add(Sign::none, Role::warning, options.model_error);
   if (options.show.truth && truth) add(Sign::square, Role::truth, "true cube, dashed", "truth");
   if (!options.show.truth && truth) hidden("truth", "true cube");

@@ -196,8 +196,9 @@ std::string curves_element(const std::vector<Figure>& figures) {
 std::string normals_element(const ReportSection& section, const ImageLevel& level) {
   if (section.normals.empty()) return "";
   return fmt::format(
-      "<h3>Normals</h3>\n<figure class=\"normals\">{}<figcaption>The hemisphere of normals: darker "
-      "or warmer cells fit the window worse; rings and marks are the candidates of the "
+      "<h3>Normals</h3>\n<figure class=\"normals\">{}<figcaption>The hemisphere of normals: "
+      "brighter "
+      "cells fit the window worse; rings and marks are the candidates of the "
       "homographies, the estimate and, if known, the truth.</figcaption></figure>\n",
       image_element(section.normals,
                     "Normals that fit the window of " + section.inspection->recording->name,

@@ -229,18 +229,20 @@ void add_cube_items(SceneItems& items, const Inspection& inspection) {
   constexpr std::array<std::array<int, 4>, 6> kFaces = {
       {{0, 1, 3, 2}, {4, 5, 7, 6}, {0, 1, 5, 4}, {2, 3, 7, 6}, {0, 2, 6, 4}, {1, 3, 7, 5}}};
   const double side = cube_side(inspection, 0);
+  const Window& window = *inspection.window;
   for (const CubeAnchor& cube : all_cubes(inspection)) {
     const auto corners = cube_corners(cube, side);
-    const auto color = [&](Role of_main_cube) {
-      return cube.plane ? css_color(cube_color(cube)) : css_color(of_main_cube);
-    };
+    const std::string of_faces = css_color(cube_face_color(cube, window));
+    const bool on_first = cube.plane.value_or(window.leader) == 0;
+    const std::string of_base =
+        on_first ? css_color(Role::cube_base) : css_color(cube_color(cube, window));
+    const std::string of_edges = cube.plane ? of_base : css_color(Role::cube_edge);
     for (const auto& face : kFaces) {
       std::vector<Vector3d> points;
       for (const int corner : face) points.push_back(corners[corner]);
-      items.add("face", "cube", points, css_color(cube_face_color(cube)))["alpha"] = 0.35;
+      items.add("face", "cube", points, of_faces)["alpha"] = 0.35;
       const bool base = &face == &kFaces.front();
-      Json& edge =
-          items.line("cube", points, true, color(base ? Role::cube_base : Role::cube_edge));
+      Json& edge = items.line("cube", points, true, base ? of_base : of_edges);
       edge["width"] = 1.8;
     }
   }

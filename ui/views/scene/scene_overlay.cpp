@@ -1,6 +1,7 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/inspection/studies/studies.h"
+#include "ui/views/image/image_geometry.h"
 #include "ui/views/scene/scene_view.h"
 
 #include <fmt/format.h>
@@ -190,7 +191,7 @@ LegendRows legend_rows(const FrameView& view) {
       for (const LegendRow& row : legend_rows(*options.colors)) rows.push_back(row);
     if (options.show.cube && inspection.cube)
       add(Sign::square,
-          color_of(Role::cube_base),
+          cube_color({}, *inspection.window),
           (inspection.other_cubes.empty() ? "cube" : "cubes on all planes") + length);
     if (const Extrapolation* after = cameras_after(view))
       add(Sign::line,

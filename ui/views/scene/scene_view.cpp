@@ -225,12 +225,12 @@ void add_cube(const SceneStage& stage, const CubeAnchor& anchor) {
   Shapes base, edges, faces;
   for (const auto& [a, b] : kCubeEdges)
     if (b < 4)
-      base.line(corners[a], corners[b], cube_color(anchor));
+      base.line(corners[a], corners[b], cube_color(anchor, *stage.inspection.window));
     else
       edges.line(corners[a], corners[b], color_of(Role::cube_edge));
   for (const auto& [a, b, c, d] : std::span(kCubeFaces).subspan(1)) {
     const std::array<Vector3d, 4> face = {corners[a], corners[b], corners[c], corners[d]};
-    faces.face(face, cube_face_color(anchor), 0.14);
+    faces.face(face, cube_face_color(anchor, *stage.inspection.window), 0.14);
   }
   stage.add(faces);
   stage.add(edges, 1.8);
@@ -243,7 +243,7 @@ void add_model(const SceneStage& stage, const CubeAnchor& anchor, const SolidMod
   const std::vector<Vector3d> points = placed_on(model, corners);
   Shapes base, faces;
   const std::array<Vector3d, 4> foot = {corners[0], corners[1], corners[3], corners[2]};
-  base.lines(foot, true, cube_color(anchor));
+  base.lines(foot, true, cube_color(anchor, *stage.inspection.window));
   for (std::size_t i = 0; i < model.triangles.size(); ++i) {
     const auto& [a, b, c] = model.triangles[i];
     const std::array<Vector3d, 3> face = {points[a], points[b], points[c]};

@@ -87,6 +87,24 @@ std::pair<std::size_t, std::size_t> argument_counts(const std::string& arguments
   return {least, most};
 }
 
+/// Throws InputError for a line that is no command.
+[[noreturn]] void refuse_line(const std::string& line) {
+  const std::vector<std::string> words = words_of(line);
+  const std::string first = words.empty() ? line : words[0];
+  std::vector<std::string> seconds;
+  for (const Action& action : actions())
+    if (action.name.starts_with(first + " "))
+      seconds.push_back(action.name.substr(first.size() + 1));
+  if (!seconds.empty())
+    throw InputError(fmt::format("{}: {}expected one of {}",
+                                 first,
+                                 words.size() > 1 ? "'" + words[1] + "', " : "",
+                                 fmt::join(seconds, ", ")));
+  if (words.size() > 2 && std::ranges::count(setting_keys(), first) > 0)
+    throw InputError(fmt::format("{}: unexpected argument '{}'", first, words[2]));
+  throw InputError(fmt::format("unknown command \"{}\"; Ctrl+P lists all commands", first));
+}
+
 std::vector<Action> make_actions() {
   std::vector<Action> table;
   add_file_actions(table);
@@ -165,18 +183,14 @@ std::optional<ActionCall> match_line(const std::string& line) {
     if (const Action* action = find_action(fmt::format("{}", fmt::join(words.begin(), end, " "))))
       return ActionCall{action, {action->name, {end, words.end()}}};
   // The name of a setting is enough: "start 0" is "set start 0".
-  if (words.size() > 1 && std::ranges::count(setting_keys(), words.front()) > 0)
+  if (words.size() == 2 && std::ranges::count(setting_keys(), words.front()) > 0)
     return ActionCall{find_action("set"), {"set", words}};
   return std::nullopt;
 }
 
 void run_line(WorkbenchState& state, const std::string& line) {
   const auto call = match_line(line);
-  if (!call) {
-    const std::vector<std::string> words = words_of(line);
-    throw InputError(fmt::format("unknown command \"{}\"; Ctrl+P lists all commands",
-                                 words.empty() ? line : words[0]));
-  }
+  if (!call) refuse_line(line);
   const auto& [action, arguments] = *call;
   if (!enabled(*action, state)) throw InputError("no recording is open");
   const auto [least, most] = argument_counts(action->arguments);
@@ -193,6 +207,12 @@ void run_action(WorkbenchState& state, const std::string& line) {
   } catch (const InputError& error) {
     say(state, error.what(), Severity::warning);
   }
+}
+
+double Arguments::number_within(double least, double most, std::size_t i) const {
+  const double value = number(i);
+  if (value >= least && value <= most) return value;
+  throw InputError(fmt::format("{}: '{}', expected {:g} to {:g}", action, words[i], least, most));
 }
 
 double Arguments::number(std::size_t i) const {
@@ -216,7 +236,7 @@ bool Arguments::on_off(bool now, std::size_t i) const {
 
 ImageZoom Arguments::zoom(const Recording& recording) const {
   ImageZoom zoom;
-  zoom.factor = std::clamp(number(), 1.0, 64.0);
+  zoom.factor = number_within(1, 64);
   if (words.size() > 1) {
     const ShownImage image(recording.camera, recording.quarter_turns);
     const ImageMapping whole = map_image(image, {.size = image.size()}, {});

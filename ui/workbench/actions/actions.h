@@ -27,6 +27,7 @@ struct Arguments {
   std::size_t size() const { return words.size(); }
   const std::string& operator[](std::size_t i) const { return words[i]; }
   double number(std::size_t i = 0) const;
+  double number_within(double least, double most, std::size_t i = 0) const;
   int whole_number(std::size_t i = 0) const;
   /// Reads "on" or "off"; toggles `now` if there is no word at `i`.
   bool on_off(bool now, std::size_t i = 0) const;

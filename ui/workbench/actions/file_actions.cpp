@@ -268,12 +268,16 @@ void add_selection(const MenuRows& menu) {
 /// Without a number, of the track selected last.
 void choose_main_plane(State& state, const Arguments& arguments) {
   Settings settings = state.document.settings;
+  const auto& inspection = state.results.inspection;
   if (!arguments.empty()) {
     settings = with_setting(settings, "plane", arguments[0], state.methods);
+    const int planes = inspection ? static_cast<int>(inspection->window->planes.size()) : 0;
+    if (planes > 0 && settings.options.plane > planes)
+      throw InputError(
+          fmt::format("main-plane: {}, the window has {}", arguments[0], counted(planes, "plane")));
   } else {
     const auto& focus = state.selection.focus;
     if (!focus) throw InputError("main-plane: no track is selected");
-    const auto& inspection = state.results.inspection;
     const auto plane = inspection ? to_main_plane(*inspection, *focus) : std::nullopt;
     if (!plane) throw InputError(fmt::format("main-plane: track {} is on no other plane", *focus));
     settings.options.plane = *plane;

@@ -38,7 +38,7 @@ void add_playing(const MenuRows& menu) {
       .add({"speed", "Speed", "Sets the playback speed as a multiple of real time"},
            "FACTOR",
            [](State& s, const Arguments& arguments) {
-             s.view.speed = std::clamp(arguments.number(), 0.05, 20.0);
+             s.view.speed = arguments.number_within(0.05, 20);
            })
       .value = speed_text;
   for (const auto& [name, title, sign, factor] :

@@ -350,7 +350,9 @@ void add_text_sizes(const MenuRows& menu) {
                            "Sets the size of text and controls [%]; without a number, resets it"},
                           "[PERCENT]",
                           [](State& s, const Arguments& arguments) {
-                            set_zoom(s, arguments.empty() ? 1 : arguments.number() / 100);
+                            constexpr double kLeast = 100 * kLeastZoom, kMost = 100 * kMostZoom;
+                            const bool reset = arguments.empty();
+                            set_zoom(s, reset ? 1 : arguments.number_within(kLeast, kMost) / 100);
                           });
   size.value = [](const State& s) { return fmt::format("{:.0f} %", 100 * s.view.text_zoom); };
   complete(size, {control_key(GLFW_KEY_0, "Ctrl+0"), control_key(GLFW_KEY_KP_0, "Ctrl+keypad 0")});

@@ -165,7 +165,7 @@ bool open_read(WorkbenchState& state, WorkerLink& link, Worker& worker, ReadFile
   if (state.files.waiting_session && !fs::exists(recording, none)) {
     say(state,
         recording.string() + " has moved. Open it at its new location to continue the session",
-        Severity::warning);
+        Severity::error);
     return false;
   }
   link.opening = read.file;
