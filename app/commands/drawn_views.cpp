@@ -10,13 +10,16 @@
 #include "ui/views/snapshot.h"
 #include "ui/workbench_window.h"
 
+#include <algorithm>
+
 namespace gpo {
 namespace {
 
 int frame_to_draw(const ViewRequest& request, const Recording& recording) {
   const Settings& settings = request.window;
-  const int frame = request.frame.value_or(settings.start + settings.frames - 1);
   const int last = recording.frame_count() - 1;
+  // The inspector refuses a window that does not fit.
+  const int frame = request.frame.value_or(std::min(settings.start + settings.frames - 1, last));
   if (frame >= 0 && frame <= last) return frame;
   throw SettingError(
       "frame", fmt::format("{} is not in the recording, which has frames 0 to {}", frame, last));

@@ -1,6 +1,7 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
 #include "app/commands/commands.h"
+#include "engine/files/image_codec.h"
 #include "engine/recording/images/images.h"
 #include "engine/recording/layouts/open_recording.h"
 #include "tests/app/program.h"
@@ -177,6 +178,15 @@ TEST(Snapshot, RefusesBadInputInOneLineAndLeavesNoFile) {
        {"--view curves --lengths 1", "--lengths"},
        {"--view compare --frame 60", "--frame: 60 is not in the recording"},
        {"--view image --baseline no.png", "--baseline: cannot decode no.png as an image"}});
+}
+
+TEST(Snapshot, ReportsThatOneImageIsNoWindow) {
+  const auto folder = fresh_folder();
+  write_file(folder / "one" / "0.png", encode_png(cv::Mat(48, 64, CV_8UC1, cv::Scalar(90))));
+  expect_refused(program("snapshot '{}' --view window --output '{}'",
+                         (folder / "one").string(),
+                         (folder / "a.png").string()),
+                 "Needs at least 2 frames; the recording has 1");
 }
 
 TEST(Snapshot, OutputMustBePng) {
