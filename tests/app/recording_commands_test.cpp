@@ -52,16 +52,21 @@ TEST(Convert, KeepsTheReadoutTime) {
 
 TEST(Convert, WritesTheFormatThatTheExtensionNames) {
   const fs::path folder = fresh_folder();
-  succeeding("convert {} --output {}", kDesk, folder / "a.mcap");
-  EXPECT_TRUE(fs::is_regular_file(folder / "a.mcap"));
-  EXPECT_THAT(succeeding("info {}", folder / "a.mcap").out, HasSubstr("ROS bag"));
+  for (const char* name : {"a.mcap", "B.MCAP"}) {
+    succeeding("convert {} --output {}", kDesk, folder / name);
+    EXPECT_TRUE(fs::is_regular_file(folder / name));
+    EXPECT_THAT(succeeding("info {}", folder / name).out, HasSubstr("ROS bag"));
+  }
 }
 
 TEST(Convert, RefusesAnExistingFolderAndAForeignExtension) {
   expect_each_refused("convert " + kDesk,
                       {{" --output {}/..", "is not empty; choose a new or empty folder"},
                        {" --format euroc --output {}/a.bag", "--format euroc writes a folder, but"},
-                       {" --format mcap --output {}/a.bag", "wrong extension, expected .mcap"}});
+                       {" --format mcap --output {}/a.bag", "wrong extension, expected .mcap"},
+                       {" --output {}/a.db3", "found the ending .db3, expected a folder, or a"},
+                       {" --output {}/a.MP4", "found the ending .mp4, expected a folder, or a"},
+                       {" --output {}/a.bag/", "found the ending .bag, expected a folder, or a"}});
 }
 
 std::vector<std::vector<double>> rows_of(const fs::path& file) {

@@ -232,8 +232,24 @@ int significant_bits(const cv::Mat& image) {
   return 16;
 }
 
-cv::Mat to_8_bits(const cv::Mat& image, int bits) {
+/// Returns the bits of a recording whose first image has 16: the first one may be dark.
+int significant_bits(const ReadImage& read, const cv::Mat& first, int count) {
+  constexpr int kSamples = 5;
+  int bits = significant_bits(first);
+  for (int i = 1; i < kSamples && first.depth() != CV_8U; ++i) {
+    try {
+      bits = std::max(bits, significant_bits(read(i * (count - 1) / (kSamples - 1)).image));
+    } catch (const InputError&) {  // a window that contains the image reports it
+    }
+  }
+  return bits;
+}
+
+/// An image that needs more bits than those sampled is scaled by its own, which is better than
+/// white.
+cv::Mat to_8_bits(const cv::Mat& image, int sampled_bits) {
   if (image.depth() == CV_8U) return image;
+  const int bits = std::max(sampled_bits, significant_bits(image));
   cv::Mat reduced;
   image.convertTo(reduced, CV_8U, 255 / (std::exp2(bits) - 1));
   return reduced;
@@ -302,12 +318,13 @@ std::optional<ImageHeader> read_image_header(std::string_view bytes) {
   return header && header->width > 0 && header->height > 0 ? header : std::nullopt;
 }
 
-void check_size(const fs::path& file, cv::Size size, const Camera& camera) {
+void check_size(const fs::path& file, cv::Size size, const Camera& camera, const char* expected) {
   if (camera.width == 0 || size == cv::Size(camera.width, camera.height)) return;
   refuse(file,
-         "found an image of {}x{}, expected the calibrated resolution {}x{}",
+         "found an image of {}x{}, expected {} {}x{}",
          size.width,
          size.height,
+         expected,
          camera.width,
          camera.height);
 }
@@ -317,14 +334,16 @@ std::shared_ptr<const FrameCache> cache_images(int count,
                                                Camera& camera,
                                                std::size_t cache_bytes) {
   const auto [first, first_name] = read(0);
-  check_size(first_name, first.size(), camera);
+  const char* expected = camera.width == 0 ? "the first image's resolution" : kCalibratedResolution;
+  check_size(first_name, first.size(), camera, expected);
   camera.width = first.cols;
   camera.height = first.rows;
-  const auto decode = [read, camera, bits = significant_bits(first)](int index) {
-    const auto [image, name] = read(index);
-    check_size(name, image.size(), camera);
-    return to_8_bits(image, bits);
-  };
+  const auto decode =
+      [read, camera, expected, bits = significant_bits(read, first, count)](int index) {
+        const auto [image, name] = read(index);
+        check_size(name, image.size(), camera, expected);
+        return to_8_bits(image, bits);
+      };
   return std::make_shared<const FrameCache>(count, decode, cache_bytes);
 }
 

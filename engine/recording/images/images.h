@@ -32,8 +32,9 @@ struct NamedImage {
 };
 using ReadImage = std::function<NamedImage(int index)>;
 
-/// Caches at least one image, converted to 8 bits. The first determines the number of significant
-/// bits, and the camera's size if the calibration lacks it. Throws InputError.
+/// Caches at least one image, converted to 8 bits. The first determines the camera's size if the
+/// calibration lacks it, and it and, if it has 16 bits, four others the number of significant bits;
+/// an image that needs more is scaled by its own. Throws InputError.
 std::shared_ptr<const FrameCache> cache_images(int count,
                                                const ReadImage& read,
                                                Camera& camera,
@@ -63,8 +64,13 @@ struct ImageHeader {
 /// Reads the header of a PNG, JPEG, BMP, PNM, TIFF or WebP; nullopt if unknown or truncated.
 std::optional<ImageHeader> read_image_header(std::string_view bytes);
 
-/// Throws InputError if an image has not the camera's calibrated size; a size of 0x0 is unknown.
-void check_size(const fs::path& file, cv::Size size, const Camera& camera);
+inline constexpr const char* kCalibratedResolution = "the calibrated resolution";
+/// Throws InputError if an image has not the camera's size; a size of 0x0 is unknown. `expected`
+/// names what the size is from.
+void check_size(const fs::path& file,
+                cv::Size size,
+                const Camera& camera,
+                const char* expected = kCalibratedResolution);
 
 /// Sets at least one file as the recording's images, as `cache_images` does.
 void add_image_files(Recording& recording,

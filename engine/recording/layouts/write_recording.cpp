@@ -174,7 +174,8 @@ void check_bag(const Recording& recording,
                const fs::path& output) {
   const bool mcap = format == RecordingFormat::mcap;
   const char* ending = mcap ? ".mcap" : ".bag";
-  if (output.extension() != ending) refuse(output, "wrong extension, expected {}", ending);
+  if (lower_case(output.extension().string()) != ending)
+    refuse(output, "wrong extension, expected {}", ending);
   std::error_code none;
   if (fs::exists(output, none)) refuse(output, "already exists; choose a new file");
   if (!recording.images) refuse(recording.path, "has no images, which a bag needs");
@@ -182,7 +183,7 @@ void check_bag(const Recording& recording,
   const std::int64_t second = 1'000'000'000;
   if (first < (mcap ? std::numeric_limits<std::int32_t>::min() * second : 0))
     refuse(recording.path,
-           "time {} ns is before 1970, which ROS 1 cannot store; use --format mcap",
+           "time {} ns is before 1970, which ROS 1 cannot store; choose a name that ends in .mcap",
            first);
 }
 

@@ -4,16 +4,28 @@
 
 #include "engine/base/error.h"
 #include "engine/base/stop.h"
+#include "engine/files/refuse.h"
+#include "engine/files/text_file.h"
 
+#include <algorithm>
 #include <utility>
 
 namespace gpo {
 
 RecordingFormat recording_format_of(const fs::path& output) {
-  const std::string extension = output.extension();
-  return extension == ".bag"    ? RecordingFormat::rosbag
-         : extension == ".mcap" ? RecordingFormat::mcap
-                                : RecordingFormat::euroc;
+  static const std::vector<std::string> kOtherFiles = split(
+      ".db3 .zip .tar .gz .tgz .7z .mp4 .mov .mkv .webm .avi .png .jpg .csv .txt .json .yaml", ' ');
+  const bool folder = !output.has_filename();  // a slash at the end
+  const fs::path named = folder ? output.parent_path() : output;
+  const std::string ending = lower_case(named.extension().string());
+  const bool bag = ending == ".bag" || ending == ".mcap";
+  if ((folder && bag) || std::ranges::count(kOtherFiles, ending) > 0)
+    refuse(output,
+           "found the ending {}, expected a folder, or a file name that ends in .bag or .mcap",
+           ending);
+  return ending == ".bag"    ? RecordingFormat::rosbag
+         : ending == ".mcap" ? RecordingFormat::mcap
+                             : RecordingFormat::euroc;
 }
 
 RecordingWriter::RecordingWriter(std::function<void()> changed)

@@ -13,7 +13,8 @@
 
 namespace gpo {
 
-/// Returns the format of an output by its extension: .bag, .mcap, else an EuRoC folder.
+/// Returns the format of an output by its extension in any case: .bag, .mcap, else an EuRoC folder.
+/// Throws InputError for extensions of other files.
 RecordingFormat recording_format_of(const fs::path& output);
 
 struct WrittenRecording {

@@ -101,6 +101,34 @@ TEST_F(ImagesReader, SortsImagesByTheirNumbers) {
                           "no ground truth: no metrics"));
 }
 
+TEST_F(ImagesReader, ScalesImagesOf16BitsAlikeAlsoIfTheFirstIsDark) {
+  for (int i = 0; i < 12; ++i)
+    folder.write(std::to_string(i) + ".tiff",
+                 cv::Mat(48, 64, CV_16UC1, cv::Scalar::all(i == 0 ? 500 : 2000 + 100 * i)));
+  const auto recording = open();
+  const auto gray = [&](int i) { return int(recording->images->gray(i).at<std::uint8_t>(9, 9)); };
+  EXPECT_EQ(gray(0), 31);  // 500 / 4095 * 255
+  EXPECT_EQ(gray(11), 193);
+}
+
+TEST_F(ImagesReader, NeverMakesImagesOf16BitsWhiteAmongThoseOf8) {
+  for (int i = 0; i < 4; ++i)
+    folder.write(std::to_string(i) + ".tiff",
+                 i % 2 == 0 ? cv::Mat(48, 64, CV_8UC1, cv::Scalar::all(70))
+                            : cv::Mat(48, 64, CV_16UC1, cv::Scalar::all(18'000)));
+  const auto recording = open();
+  for (int i = 0; i < 4; ++i)
+    EXPECT_EQ(int(recording->images->gray(i).at<std::uint8_t>(9, 9)), 70) << i;
+}
+
+TEST_F(ImagesReader, RefusesAnotherSizeThanThatOfTheFirstImage) {
+  write_images(4);
+  folder.write("3.png", cv::Mat(24, 32, CV_8UC1, cv::Scalar::all(9)));
+  const auto recording = open();
+  EXPECT_THAT(error_of([&] { recording->images->bgr(3); }),
+              HasSubstr("found an image of 32x24, expected the first image's resolution 64x48"));
+}
+
 TEST_F(ImagesReader, UsesTheRateOfTheCalibration) {
   write_images(3);
   folder.write("camera.yaml", std::string(kCameraYaml) + "rate_hz: 20\n");
