@@ -127,10 +127,11 @@ TEST(ReportScene, DrawsEachCubeInTheColorOfItsPlane) {
     if (item["layer"] == "cube") (item["kind"] == "face" ? faces : lines).insert(item["color"]);
   const auto css = [](std::uint32_t rgb) { return fmt::format("#{:06x}", rgb); };
   const std::string main = css(color_of(Role::cube_base, Theme::light));
-  EXPECT_THAT(lines, testing::IsSupersetOf({main, css(cube_color(other))}));
-  EXPECT_THAT(faces,
-              testing::UnorderedElementsAre(css(cube_face_color(*inspection.cube)),
-                                            css(cube_face_color(other))));
+  EXPECT_THAT(lines, testing::IsSupersetOf({main, css(cube_color(other, *inspection.window))}));
+  EXPECT_THAT(
+      faces,
+      testing::UnorderedElementsAre(css(cube_face_color(*inspection.cube, *inspection.window)),
+                                    css(cube_face_color(other, *inspection.window))));
 }
 
 TEST(ReportCommand, NamesChangedSettingsAndQuotesPaths) {
