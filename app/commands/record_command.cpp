@@ -52,6 +52,24 @@ void check_new_output(const fs::path& output, RecordingFormat format) {
   if (fs::exists(output)) throw InputError(output.string() + ": already exists; choose a new file");
 }
 
+/// Writes the recording and returns where. If files of other recordings beside a bag forbid it, the
+/// bag gets a folder of its own, because what was recorded must not be lost.
+fs::path write_recorded(const Recording& recording,
+                        RecordingFormat format,
+                        const fs::path& output) {
+  ProgressBar bar("writing " + output.string());
+  try {
+    write_recording(recording, std::nullopt, format, output, std::ref(bar));
+    return output;
+  } catch (const InputError& error) {
+    const fs::path own = folder_of(output) / output.stem();
+    if (format == RecordingFormat::euroc || fs::exists(own)) throw;
+    write_recording(recording, std::nullopt, format, own / output.filename(), std::ref(bar));
+    fmt::print(stderr, "{}\n", error.what());
+    return own / output.filename();
+  }
+}
+
 int record_source(const RecordArguments& arguments, Interrupt& interrupt) {
   constexpr int kQueue = 60;
   const fs::path& output = arguments.output;
@@ -76,14 +94,11 @@ int record_source(const RecordArguments& arguments, Interrupt& interrupt) {
                       .device = recorded.status.device,
                       .camera = camera_of_source(address, recorded.status.device, spool.size())},
                      live);
-  {
-    ProgressBar bar("writing " + output.string());
-    write_recording(recording, std::nullopt, format, output, std::ref(bar));
-  }
+  const fs::path written = write_recorded(recording, format, output);
   if (!recorded.end.empty()) fmt::print(stderr, "{}\n", recorded.end);
   const auto& times_ns = live.timestamps_ns;
   fmt::print("{}: {} frames, {}x{}, {:.1f} s, {} dropped\n",
-             output.string(),
+             written.string(),
              spool.count(),
              spool.size().width,
              spool.size().height,

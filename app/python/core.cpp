@@ -162,8 +162,9 @@ void bind_planes_and_sensors(SolvedClass& solved) {
   add_field(
       solved,
       "normal",
-      [](const Solved& r) { return r->plane.normal; },
-      "(3,) leading plane's normal in the reference camera: normal . x + distance = 0");
+      [](const Solved& r) { return r->ok ? std::optional(r->plane.normal) : std::nullopt; },
+      "(3,) leading plane's normal in the reference camera: normal . x + distance = 0; None if "
+      "it failed");
   add_field(
       solved,
       "normal_sigma_deg",
@@ -182,8 +183,8 @@ void bind_planes_and_sensors(SolvedClass& solved) {
   add_field(
       solved,
       "rms_px",
-      [](const Solved& r) { return r->rms_px; },
-      "root mean square of the method's own errors [px]");
+      [](const Solved& r) { return r->ok ? std::optional(r->rms_px) : std::nullopt; },
+      "root mean square of the method's own errors [px]; None if it failed");
   add_field(
       solved,
       "transfer_rms_px",

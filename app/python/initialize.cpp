@@ -99,7 +99,11 @@ py::class_<Camera> camera_class(py::module_& module) {
         if (readout_s && readout_sigma_s) made.readout->sigma_s = *readout_sigma_s;
         if (readout_direction)
           made.readout_direction = choice<ReadoutDirection>(*readout_direction);
-        if (covariance) check_camera(made);
+        check_camera(made);
+        if (readout_s && (made.width == 0 || made.height == 0))
+          throw InputError("readout_s: expected the camera's size, too");
+        if (readout_sigma_s && !readout_s)
+          throw InputError("readout_sigma_s: expected readout_s, too");
         return made;
       }),
       py::arg("K"),

@@ -116,8 +116,10 @@ Distortion distortion_of(const std::string& model, std::size_t coefficients) {
   if (coefficients == 0) return Distortion::none;
   std::vector<std::size_t> counts = lens->counts;
   if (lens->distortion == Distortion::radial_tangential) counts.insert(counts.begin(), 2);
-  const bool any = lens->distortion == Distortion::none;
-  if (!any && std::ranges::count(counts, coefficients) == 0)
+  if (lens->distortion == Distortion::none)
+    throw InputError(fmt::format("distortion: found {}, model none has none",
+                                 counted(coefficients, "coefficient")));
+  if (std::ranges::count(counts, coefficients) == 0)
     throw InputError(fmt::format("distortion: found {} coefficients, {} has {}",
                                  coefficients,
                                  model,

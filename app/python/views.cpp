@@ -4,6 +4,7 @@
 #include "app/commands/commands.h"
 #include "app/python/bindings.h"
 #include "engine/experiment/runner.h"
+#include "ui/workbench/actions/actions.h"
 
 namespace gpo {
 namespace {
@@ -25,7 +26,9 @@ py::array snapshot(const RecordingOrPath& recording,
   const ViewRequest request{
       .view = view,
       .frame = frame,
-      .size = size ? std::optional(cv::Size(size->first, size->second)) : std::nullopt,
+      .size =
+          size ? std::optional(image_size(fmt::format("{}x{}", size->first, size->second), "size"))
+               : std::nullopt,
       .methods = methods,
       .lengths = {},
       .window = wanted.settings_for(*shared),

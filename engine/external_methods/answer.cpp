@@ -128,7 +128,6 @@ Plane plane_in(const Json& json, const std::string& where) {
   const double distance = number(member(json, where, "distance"), key, "a number");
   const double length = normal.norm();
   if (!(length > 1e-9)) refuse_answer(where + ".normal", "a vector that is not zero");
-  if (!(std::abs(distance) > 1e-9 * length)) refuse_answer(key, "a number that is not zero");
   if (std::abs(length - 1) <= kRounding) return {normal, distance};
   return {normal / length, distance / length};
 }
@@ -154,6 +153,12 @@ std::vector<std::optional<Pose>> cameras_in(const Json& json, int frames) {
   }
   if (!cameras.front()) refuse_answer("cameras[0]", "the reference camera, found null");
   return cameras;
+}
+
+/// The plane's distance from the reference camera, not from the world's origin, is the unit.
+void check_off_reference(const Plane& plane, const Answer& answer, const std::string& where) {
+  if (std::abs(plane.normal.dot(answer.cameras.front()->p_wc) + plane.distance) > 1e-9) return;
+  refuse_answer(where + ".distance", "a plane that does not contain the reference camera");
 }
 
 std::vector<PlaneEstimate> planes_in(const Json& json, int count) {
@@ -265,8 +270,11 @@ Answer read_answer(std::string_view line, const ExpectedAnswer& expected) {
   if (given("plane")) {
     check_keys(json["plane"], "plane", {"normal", "distance"});
     answer.plane = plane_in(json["plane"], "plane");
+    check_off_reference(*answer.plane, answer, "plane");
   }
   answer.planes = planes_in(json, expected.planes);
+  for (std::size_t k = 0; k < answer.planes.size(); ++k)
+    check_off_reference(answer.planes[k].plane, answer, fmt::format("planes[{}]", k));
   answer.points = points_in(json, expected.tracks);
   if (given("milliseconds"))
     answer.milliseconds = number(json["milliseconds"], "milliseconds", "a number");

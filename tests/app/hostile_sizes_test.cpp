@@ -258,7 +258,7 @@ std::pair<Outcome, double> timed(const std::function<Outcome()>& run, double bou
 }
 
 void expect_bounded(const std::vector<Hostile>& inputs, RunBounds bounds) {
-  bounds.seconds *= GPO_SLOWDOWN;  // of sanitizers
+  bounds.seconds *= GPO_SLOWDOWN;  // sanitizers are slower
   const bool own_process = std::getenv("GPO_HOSTILE") != nullptr;
   for (const auto& [name, arguments, message, write] : inputs) {
     SCOPED_TRACE(name);

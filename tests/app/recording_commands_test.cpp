@@ -59,6 +59,16 @@ TEST(Convert, WritesTheFormatThatTheExtensionNames) {
   }
 }
 
+TEST(Convert, RefusesToChangeTheCameraOfABagInTheSameFolder) {
+  const fs::path folder = fresh_folder();
+  succeeding("convert {} --output {}", kDesk, folder / "given" / "a.mcap");
+  fs::create_directory(folder / "bags");
+  fs::copy(folder / "given" / "a.mcap", folder / "bags" / "a.mcap");
+  expect_refused(
+      program("convert " + kDesk + " --output '{}'", (folder / "bags" / "b.bag").string()),
+      "choose a folder without bags");
+}
+
 TEST(Convert, RefusesAnExistingFolderAndAForeignExtension) {
   expect_each_refused("convert " + kDesk,
                       {{" --output {}/..", "is not empty; choose a new or empty folder"},

@@ -48,6 +48,18 @@ TEST(Record, WritesABagOfARecordingThatItPlays) {
   EXPECT_EQ(recording->timestamps_ns[11] - recording->timestamps_ns[0], 11 * 40'000'000LL);
 }
 
+TEST(Record, GivesABagAFolderOfItsOwnBesideABagOfAnotherCamera) {
+  const fs::path folder = fresh_folder();
+  make_video(folder / "small.avi", moving_images(12, kSmall));
+  make_video(folder / "large.avi", moving_images(12, 2 * kSmall));
+  succeeding("record {} --output {}", folder / "small.avi", folder / "out" / "a.mcap");
+  const Outcome outcome =
+      succeeding("record {} --output {}", folder / "large.avi", folder / "out" / "b.mcap");
+  EXPECT_THAT(outcome.err, HasSubstr("camera.yaml: belongs to another recording"));
+  EXPECT_EQ(open_recording(folder / "out" / "a.mcap")->camera.width, kSmall.width);
+  EXPECT_EQ(open_recording(folder / "out" / "b" / "b.mcap")->camera.width, 2 * kSmall.width);
+}
+
 TEST(Record, KeepsWhatWasRecordedWhenItIsInterrupted) {
   const fs::path folder = fresh_folder();
   const auto jpegs = jpegs_of(moving_images(10, kSmall));

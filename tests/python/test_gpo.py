@@ -378,6 +378,12 @@ def test_two_points_set_the_scale():
         (lambda: gpo.evaluate([DESK], methods=[lambda window: {}]), "methods: '<lambda>=python', expected a callable"),
         (lambda: gpo.run(DESK, method_command="mine"), "mine"),
         (lambda: gpo.Camera(np.eye(3), readout_direction="in"), "unknown value 'in', expected one of down"),
+        (lambda: gpo.Camera(np.eye(3) * np.nan), "camera: fx nan"),
+        (lambda: gpo.Camera(np.eye(3), size=(-1, 5)), "camera: width -1"),
+        (lambda: gpo.Camera(np.eye(3), readout_s=0.02), "readout_s: expected the camera's size"),
+        (lambda: gpo.Camera(np.eye(3), readout_sigma_s=0.01), "readout_sigma_s: expected readout_s"),
+        (lambda: gpo.Camera(np.eye(3), distortion=[0.1], model="none"), "found 1 coefficient, model none has none"),
+        (lambda: gpo.snapshot(DESK, "scene", frames=10, size=(-5, 10)), "size: '-5x10', expected WIDTHxHEIGHT"),
         (lambda: gpo.initialize(gpo.Camera(np.eye(3), readout_s=2), [(0, [], np.zeros((0, 2)))] * 2), "camera: readout seconds 2"),
     ],
 )

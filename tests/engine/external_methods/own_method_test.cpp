@@ -337,7 +337,7 @@ TEST(ReadAnswer, NamesTheKeyOfAnError) {
           {answer_with(R"(, "plane": {"normal": [0,0,0], "distance": 1})"),
            "plane.normal: expected a vector that is not zero"},
           {answer_with(R"(, "plane": {"normal": [0,0,1], "distance": 0})"),
-           "plane.distance: expected a number that is not zero"},
+           "plane.distance: expected a plane that does not contain the reference camera"},
           {answer_with(R"(, "planes": [{"plane": 2, "normal": [0,0,1], "distance": 1}])"),
            "planes[0].plane: expected a number from 0 to 1"},
           {answer_with(R"(, "points": 3)"), "points: expected an array"},

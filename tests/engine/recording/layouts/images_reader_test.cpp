@@ -122,8 +122,9 @@ TEST_F(ImagesReader, NeverMakesImagesOf16BitsWhiteAmongThoseOf8) {
 }
 
 TEST_F(ImagesReader, RefusesAnotherSizeThanThatOfTheFirstImage) {
+  std::filesystem::remove(folder.path() / "camera.yaml");
   write_images(4);
-  folder.write("3.png", cv::Mat(24, 32, CV_8UC1, cv::Scalar::all(9)));
+  folder.write("img3.png", cv::Mat(24, 32, CV_8UC1, cv::Scalar::all(9)));
   const auto recording = open();
   EXPECT_THAT(error_of([&] { recording->images->bgr(3); }),
               HasSubstr("found an image of 32x24, expected the first image's resolution 64x48"));
