@@ -64,9 +64,8 @@ TEST(Convert, RefusesToChangeTheCameraOfABagInTheSameFolder) {
   succeeding("convert {} --output {}", kDesk, folder / "given" / "a.mcap");
   fs::create_directory(folder / "bags");
   fs::copy(folder / "given" / "a.mcap", folder / "bags" / "a.mcap");
-  expect_refused(
-      program("convert " + kDesk + " --output '{}'", (folder / "bags" / "b.bag").string()),
-      "choose a folder without bags");
+  expect_refused(program("convert {} --output {}", kDesk, folder / "bags" / "b.bag"),
+                 "choose a folder without bags");
 }
 
 TEST(Convert, RefusesAnExistingFolderAndAForeignExtension) {

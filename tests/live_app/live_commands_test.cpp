@@ -51,7 +51,7 @@ TEST(Record, WritesABagOfARecordingThatItPlays) {
 TEST(Record, GivesABagAFolderOfItsOwnBesideABagOfAnotherCamera) {
   const fs::path folder = fresh_folder();
   make_video(folder / "small.avi", moving_images(12, kSmall));
-  make_video(folder / "large.avi", moving_images(12, 2 * kSmall));
+  make_video(folder / "large.avi", moving_images(12, kSmall * 2));
   succeeding("record {} --output {}", folder / "small.avi", folder / "out" / "a.mcap");
   const Outcome outcome =
       succeeding("record {} --output {}", folder / "large.avi", folder / "out" / "b.mcap");
