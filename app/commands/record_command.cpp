@@ -123,7 +123,7 @@ RunCommand add_record(CLI::App& app) {
   command
       .add_option(
           "--seconds", to->seconds, "Length to record [s]; default: until Ctrl-C or its end")
-      ->check(CLI::PositiveNumber);
+      ->check(number_within(0.001, 1e6));
   return [to](OwnMethods& /*own*/, Interrupt& interrupt) { return record_source(*to, interrupt); };
 }
 

@@ -258,7 +258,7 @@ RunCommand add_run(CLI::App& app) {
                             "--extrapolate"})
     scan->excludes(command.get_option(other));
   command.add_option("--scan-step", run->scan_step, "Frames between starts")
-      ->check(CLI::PositiveNumber)
+      ->check(CLI::Range(1, 1'000'000))
       ->needs(scan);
   return [run](OwnMethods& own, Interrupt& /*interrupt*/) {
     find_method(run->inspect, own.table);

@@ -43,6 +43,14 @@ void check_can_be_shown(const std::vector<std::string>& waiting) {
 
 }  // namespace
 
+std::function<std::string(const std::string&)> number_within(double least, double most) {
+  return [=](const std::string& text) {
+    const auto value = parse_number(text);
+    if (value && *value >= least && *value <= most) return std::string();
+    return fmt::format("'{}', expected a number from {:g} to {:g}", text, least, most);
+  };
+}
+
 void MethodLog::add(const std::string& name, const std::string& line) {
   constexpr int kMaxLines = 200;
   const std::lock_guard lock(mutex_);
@@ -86,7 +94,7 @@ void add_method_commands(CLI::App& command, MethodArguments& arguments) {
                   arguments.timeout_s,
                   "Time limit per window, after which the command is killed [s]")
       ->capture_default_str()
-      ->check(CLI::Range(0.01, 1e5));
+      ->check(number_within(0.01, 1e5));
   command.add_flag("--method-resample",
                    arguments.resample,
                    "Gives such a command ten more windows, each without a tenth of the tracks, for "

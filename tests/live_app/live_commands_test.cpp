@@ -89,6 +89,17 @@ TEST(Record, RefusesWhatItCannotOpenOrWrite) {
   EXPECT_FALSE(fs::exists(folder / "a"));
 }
 
+TEST(Record, RefusesNumbersAndPortsThatMeanNothing) {
+  const std::string output = " --output '" + (fresh_folder() / "a").string() + "'";
+  for (const char* seconds : {"0", "-1", "nan", "x"})
+    expect_refused(
+        program("record udp://127.0.0.1:5000 --seconds " + std::string(seconds) + output),
+        "--seconds: '" + std::string(seconds) + "', expected a number from 0.001 to");
+  for (const char* address : {"udp://127.0.0.1", "udp://127.0.0.1:99999", "udp://:0"})
+    expect_refused(program("record " + std::string(address) + output),
+                   std::string(address) + ": expected udp://HOST:PORT with a port from 1 to 65535");
+}
+
 TEST(LiveSnapshot, DrawsTheSameTwice) {
   const fs::path folder = fresh_folder();
   for (const char* name : {"one", "two"})

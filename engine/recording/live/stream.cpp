@@ -118,8 +118,8 @@ class LiveInput {
     check_stop();
     if (error == AVERROR_EXIT) refuse_source("no data; check the sender and the address");
     if (address_.starts_with("camera:")) throw InputError(camera_error(address_, AVUNERROR(error)));
-    // libavformat reports unknown content as either.
-    if (error == AVERROR_INVALIDDATA || error == AVERROR(EIO))
+    // libavformat reports unknown content as any of these.
+    if (error == AVERROR_INVALIDDATA || error == AVERROR(EIO) || error == AVERROR(EINVAL))
       refuse_source("sends no video in MPEG-TS, MJPEG or RTSP; check the sender and the address");
     refuse_source(text_of_error(error) + "; check the sender and the address");
   }
@@ -195,6 +195,17 @@ CameraChoice camera_choice(const std::string& address) {
   return {std::stoi(parts[1]), parts[2], parts[3]};
 }
 
+/// Throws InputError unless a UDP address has a port: FFmpeg would wait for data without an end.
+void check_udp_port(const std::string& address) {
+  static const std::regex kWithPort(R"(udp://[^/?]*:(\d{1,5})([/?].*)?)");
+  std::smatch parts;
+  constexpr int kMostPort = 65'535;
+  const bool found = std::regex_match(address, parts, kWithPort);
+  const int port = found ? std::stoi(parts[1]) : 0;
+  if (port < 1 || port > kMostPort)
+    refuse(address, "expected udp://HOST:PORT with a port from 1 to {}", kMostPort);
+}
+
 }  // namespace
 
 OpenSource open_camera(const SourceAddress& address, const SourceContext& context) {
@@ -221,6 +232,7 @@ OpenSource open_camera(const SourceAddress& address, const SourceContext& contex
 OpenSource open_stream(const SourceAddress& address, const SourceContext& context) {
   const Allowed& allowed = *std::ranges::find_if(
       kAllowed, [&](const Allowed& one) { return address.text.starts_with(one.prefix); });
+  if (allowed.prefix == "udp://") check_udp_port(address.text);
   Options options;
   options.set("format_whitelist", allowed.formats);
   options.set("protocol_whitelist", allowed.protocols);
