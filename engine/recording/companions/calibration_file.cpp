@@ -20,9 +20,7 @@ using Names = const char*;  ///< separated by blanks
 /// Names of OpenCV's samples, of ROS, and common ones; OpenCV itself does not define them.
 constexpr Names kMatrix = "camera_matrix cameraMatrix Camera_Matrix K k M1 mtx";
 constexpr Names kCoefficients =
-    "distortion_coefficients Distortion_Coefficients distCoeffs dist_coeffs distortion D d D1 dist "
-    "distortion_coeffs distortion_coefficient distortion_vector distCoef distCoeff dist_coef "
-    "dist_coefs dist_coeff coeffs coefficients";
+    "distortion_coefficients Distortion_Coefficients distCoeffs dist_coeffs distortion D d D1 dist";
 constexpr Names kWidth = "image_width image_Width imageWidth width";
 constexpr Names kHeight = "image_height image_Height imageHeight height";
 constexpr Names kSize = "image_size imageSize resolution size";
@@ -249,27 +247,6 @@ Calibration read_euroc_lens(const YamlEntry& root) { return with_body(root, euro
 
 Calibration read_opencv_lens(const YamlEntry& root) { return with_body(root, opencv_camera(root)); }
 
-/// Throws InputError for a list of numbers in a key whose name tells that it is the distortion, if
-/// the lens was read without one.
-void refuse_unread_distortion(const Camera& camera, const YamlEntry& root) {
-  if (camera.distortion != Distortion::none || !root.node.IsMap()) return;
-  for (const auto& child : root.node) {
-    if (!child.first.IsScalar()) continue;
-    const auto name = child.first.as<std::string>();
-    const std::string lower = lower_case(name);
-    const bool named =
-        lower.find("dist") != std::string::npos || lower.find("coef") != std::string::npos;
-    const YamlEntry entry{root.file, name, child.second};
-    const bool list = child.second.IsSequence() || (child.second.IsMap() && child.second["data"]);
-    if (!named || !list) continue;
-    const auto values = numbers(entry);
-    if (std::ranges::any_of(values, [](double value) { return value != 0; }))
-      yaml_fail(entry,
-                "an unknown key with " + counted(values.size(), "number"),
-                "the key distortion_coefficients");
-  }
-}
-
 Calibration read_kalibr(const YamlEntry& root) {
   const YamlEntry cam0 = at(root, "cam0", "a camera");
   return find_any(cam0, kMatrix) ? read_opencv_lens(cam0) : read_euroc_lens(cam0);
@@ -318,7 +295,6 @@ Calibration read_calibration(const fs::path& file) {
   result.format = format->name;
   result.name = file.filename().string();
   const YamlEntry& camera = kalibr && kalibr->node.IsMap() ? *kalibr : root;
-  refuse_unread_distortion(result.camera, camera);
   set_sigmas(result.camera, camera);
   set_covariance(result.camera, camera);
   set_readout(result.camera, camera);

@@ -25,8 +25,7 @@ std::vector<std::string> calibration_names() {
 /// Kalibr adds the bag's name: "camchain-imucam-desk.yaml", "desk-camchain.yaml".
 bool is_camchain(const fs::path& file) {
   const std::string name = file.filename().string();
-  return name.find("camchain") != std::string::npos &&
-         lower_case(file.extension().string()) == ".yaml";
+  return name.find("camchain") != std::string::npos && file.extension() == ".yaml";
 }
 
 bool has_word(const std::string& text, Names words) {
@@ -42,21 +41,16 @@ constexpr Names kCalibrationWords = "distort intrinsic focal fl_x camera_matrix 
 
 constexpr const char* kColmapBinary = "cameras.bin";
 
-constexpr const char* kRosCalibrator = "ost.txt";
-
-std::string ending_of(const fs::path& file) { return lower_case(file.extension().string()); }
-
 bool is_text(const fs::path& file) {
   const auto endings = {".yaml", ".yml", ".xml", ".json", ".txt"};
-  return std::ranges::count(endings, ending_of(file)) > 0;
+  return std::ranges::count(endings, file.extension().string()) > 0;
 }
 
 /// Names that announce a calibration; a text file must have one to be read at all.
 bool is_named_calibration(const fs::path& file) {
   const std::string name = lower_case(file.filename().string());
-  const bool named = has_word(name, kCalibrationNames) || name == kRosCalibrator;
-  return named && !has_word(name, kOthers) && !is_image_name(file) && !is_video_name(file) &&
-         !is_bag_name(file);
+  return has_word(name, kCalibrationNames) && !has_word(name, kOthers) && !is_image_name(file) &&
+         !is_video_name(file) && !is_bag_name(file);
 }
 
 bool has_other_meaning(const fs::path& file) {
@@ -86,7 +80,7 @@ std::optional<std::string> fault_of(const fs::path& file) {
   const bool readable = (binary || is_text(file)) && fs::file_size(file, none) <= kMostBytes;
   if (!readable)
     return likely ? std::optional<std::string>("not a format that is read") : std::nullopt;
-  if (has_other_meaning(file) || (ending_of(file) == ".txt" && !likely)) return std::nullopt;
+  if (has_other_meaning(file) || (file.extension() == ".txt" && !likely)) return std::nullopt;
   try {
     const std::string bytes = read_file(file);
     likely = likely || binary || is_worded_calibration(bytes);
@@ -99,13 +93,6 @@ std::optional<std::string> fault_of(const fs::path& file) {
   } catch (const InputError& error) {
     return likely ? std::optional(without_place(error.what(), file)) : std::nullopt;
   }
-}
-
-/// Returns whether a readable lens file only names those of its cameras and adds where they are
-/// mounted.
-bool names_cameras(const fs::path& file) {
-  const LensFormat* format = lens_format_of(load_lens_file(file));
-  return format != nullptr && format->read == read_vins_fusion;
 }
 
 std::optional<fs::path> by_name(const fs::path& folder) {
@@ -121,7 +108,7 @@ void search_folder(const fs::path& folder, CalibrationSearch& search) {
   const auto named = by_name(folder);
   if (!search.file) search.file = named;
   auto files = files_of_kind(folder, [](const fs::path& file) {
-    const bool structured = is_text(file) && ending_of(file) != ".txt";
+    const bool structured = is_text(file) && file.extension() != ".txt";
     return structured || is_named_calibration(file) || file.filename() == kColmapBinary;
   });
   files.resize(std::min(files.size(), kMostFiles));
@@ -129,9 +116,7 @@ void search_folder(const fs::path& folder, CalibrationSearch& search) {
     if (search.file && *search.file == file) continue;
     const auto fault = fault_of(file);
     if (!fault) continue;
-    const bool first = !search.file;
-    if (fault->empty() && (first || (search.by_content && names_cameras(file)))) {
-      if (!first) search.unused.push_back({*search.file, "", "another file is used"});
+    if (fault->empty() && !search.file) {
       search.file = file;
       search.by_content = true;
     } else {

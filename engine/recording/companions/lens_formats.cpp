@@ -9,7 +9,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include <Eigen/Geometry>
 #include <nlohmann/json.hpp>
 
 namespace gpo {
@@ -170,9 +169,8 @@ Calibration read_orb_slam(const YamlEntry& root) {
   const bool old = !find(root, "Camera1.fx") && find(root, "Camera.fx");
   const std::string prefix = old ? "Camera." : "Camera1.";
   const auto type = find(root, "Camera.type");
-  NamedLens lens = type ? lens_named(kLenses, *type, text(*type, "a camera type")) : kLenses[0];
-  // ORB-SLAM3 takes a pinhole without k1 as one without distortion.
-  if (lens.distortion == radial_tangential && !find(root, prefix + "k1")) lens = kLenses[2];
+  const NamedLens lens =
+      type ? lens_named(kLenses, *type, text(*type, "a camera type")) : kLenses[0];
   set_size(camera, root, "Camera.width", "Camera.height");
   set_named_lens(camera, root, prefix, lens);
   const auto k3 = find(root, prefix + "k3");
@@ -291,10 +289,6 @@ Calibration read_nice_slam(const YamlEntry& root) {
   Calibration result;
   set_size(result.camera, root, "camera/w", "camera/h");
   set_named_lens(result.camera, root, "camera/", {"pinhole", Distortion::none, kPinholeKeys, ""});
-  const auto distortion = find_path(root, "camera/distortion");
-  if (!distortion) return result;
-  result.camera.distortion = Distortion::radial_tangential;
-  set_coefficients(result.camera, *distortion, numbers(*distortion));
   return result;
 }
 

@@ -7,7 +7,6 @@
 #include "engine/recording/companions/lens_formats.h"
 
 #include <algorithm>
-#include <map>
 
 namespace gpo {
 namespace {
@@ -170,42 +169,7 @@ Calibration read_four_numbers(const fs::path& file, std::string_view bytes) {
   return result;
 }
 
-constexpr std::string_view kOstBegin = "# oST version";
-
-bool is_ost(const fs::path& /*file*/, std::string_view bytes) {
-  return bytes.starts_with(kOstBegin);
-}
-
-/// The text output of ROS' camera_calibration: names, each with its numbers in the lines below it.
-Calibration read_ost(const fs::path& file, std::string_view bytes) {
-  std::map<std::string, std::vector<double>, std::less<>> values;
-  std::vector<double>* current = nullptr;
-  for (const std::string_view line : data_lines(bytes)) {
-    const auto numbers = numbers_in(line);
-    if (numbers.empty())
-      current = &values[std::string(trimmed(line))];
-    else if (current != nullptr)
-      current->insert(current->end(), numbers.begin(), numbers.end());
-  }
-  const auto part = [&](const char* name, std::size_t count) -> const std::vector<double>& {
-    const std::vector<double>& found = values[name];
-    if (found.size() != count)
-      fail_at(
-          file, counted(found.size(), "number") + " below \"" + name + "\"", std::to_string(count));
-    return found;
-  };
-  const YamlEntry place = table_place(file);
-  Calibration result;
-  set_resolution(result.camera, place, part("width", 1)[0], part("height", 1)[0]);
-  const auto& K = part("camera matrix", 9);
-  set_intrinsics(result.camera, place, {K[0], K[4], K[2], K[5]});
-  result.camera.distortion = Distortion::radial_tangential;
-  set_coefficients(result.camera, place, values["distortion"]);
-  return result;
-}
-
-constexpr auto kTables = std::to_array<LensTable>({{"ROS", is_ost, read_ost},
-                                                   {"COLMAP", is_colmap_binary, read_colmap_binary},
+constexpr auto kTables = std::to_array<LensTable>({{"COLMAP", is_colmap_binary, read_colmap_binary},
                                                    {"COLMAP", is_colmap_text, read_colmap_text},
                                                    {"ETH3D", is_four_numbers, read_four_numbers}});
 

@@ -9,9 +9,7 @@
 #include "engine/recording/companions/companion_files.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <limits>
 
 #include <Eigen/LU>
 #include <nlohmann/json.hpp>
@@ -49,31 +47,12 @@ Pose pose_of(std::span<const double> T, const std::string& place) {
   return pose;
 }
 
-/// The same for a frame that may not be tracked: programs then write zeros, or numbers that are not
-/// finite.
-std::optional<Pose> pose_if_tracked(std::span<const double> T, const std::string& place) {
-  const auto finite = [](double value) { return std::isfinite(value); };
-  const auto zero = [](double value) { return value == 0; };
-  if (!std::ranges::all_of(T, finite) || std::ranges::all_of(T.first(12), zero))
-    return std::nullopt;
-  return pose_of(T, place);
-}
-
-/// Returns whether a word is "nan", "-inf", or "-1.#IND" of Microsoft's library.
-bool is_not_finite(std::string_view word) {
-  const std::string lower = lower_case(word);
-  return std::ranges::any_of(std::array{"nan", "inf", "#ind", "#qnan"}, [&](const char* sign) {
-    return lower.find(sign) != std::string::npos;
-  });
-}
-
 std::vector<double> numbers_of(std::string_view line, const std::string& place) {
   std::vector<double> values;
   while (!line.empty()) {
-    const std::string_view word = take_word(line);
-    const auto value = parse_number(word);
-    if (!value && !is_not_finite(word)) fail_at(place, "no number", "numbers separated by blanks");
-    values.push_back(value.value_or(std::numeric_limits<double>::quiet_NaN()));
+    const auto value = parse_number(take_word(line));
+    if (!value) fail_at(place, "no number", "numbers separated by blanks");
+    values.push_back(*value);
   }
   return values;
 }
@@ -89,7 +68,7 @@ Poses rows_of(const fs::path& file, std::size_t count, const Files& images) {
     const auto values = numbers_of(*line, place);
     if (values.size() != count)
       fail_at(place, counted(values.size(), "number"), fmt::format("{} of a pose", count));
-    poses.push_back(pose_if_tracked(values, place));
+    poses.emplace_back(pose_of(values, place));
   }
   if (poses.size() != images.size())
     fail_at(
@@ -139,7 +118,9 @@ Poses read_seven_scenes(const fs::path& /*file*/, const Files& images) {
         text, [](char c) { return c == '\n' || c == '\r' || c == '\t'; }, ' ');
     const auto values = numbers_of(trimmed(text), file.string());
     if (values.size() != 16) fail_at(file, counted(values.size(), "number"), "16 (a 4x4 matrix)");
-    poses.push_back(pose_if_tracked(values, file.string()));
+    // Frames that were not tracked have a matrix that is no pose.
+    const bool tracked = std::ranges::all_of(values, [](double v) { return std::isfinite(v); });
+    poses.push_back(tracked ? std::optional(pose_of(values, file.string())) : std::nullopt);
   }
   return poses;
 }
@@ -207,15 +188,6 @@ constexpr auto kDataSets =
                             {"nerfstudio", find_nerfstudio, read_nerfstudio_poses},
                             {"COLMAP", find_colmap, read_colmap}});
 
-/// Adds a note if some frames have no pose. Throws InputError if none has.
-void check_tracked(const fs::path& file, const Poses& poses, Recording& recording) {
-  const auto missing = std::ranges::count_if(poses, [](const auto& pose) { return !pose; });
-  if (missing == std::ssize(poses)) fail_at(file, "no pose", "a pose of at least one frame");
-  if (missing > 0)
-    recording.notes.push_back(fmt::format(
-        "{}: {} of {} frames have no pose", file.filename().string(), missing, poses.size()));
-}
-
 }  // namespace
 
 void add_data_set_truth(Recording& recording, const fs::path& folder) {
@@ -224,10 +196,8 @@ void add_data_set_truth(Recording& recording, const fs::path& folder) {
     const auto file = set.find(folder, recording.image_files);
     if (!file) continue;
     try {
-      Poses poses = set.read(*file, recording.image_files);
-      check_tracked(*file, poses, recording);
       recording.truth = GroundTruth{fmt::format("{} ({})", file->filename().string(), set.name),
-                                    std::move(poses)};
+                                    set.read(*file, recording.image_files)};
       recording.truth->jumps = jumps_of(recording.timestamps_ns, recording.truth->poses);
       recording.files.push_back({*file, fmt::format("ground truth ({})", set.name), ""});
       return;

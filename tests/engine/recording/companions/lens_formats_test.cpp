@@ -229,58 +229,6 @@ TEST(LensFormats, FollowVinsFusionToItsCamera) {
   EXPECT_GT(found.T_body_camera->R_wc(1, 0), 0.99);
 }
 
-TEST(LensFormats, ReadEverySpellingOfTheDistortionAndRefuseOthers) {
-  const TestFolder folder;
-  const auto read = [&](const std::string& key) {
-    return read_calibration(
-               folder.write("calibration.json",
-                            R"({"camera_matrix": [[60, 0, 31], [0, 61, 23], [0, 0, 1]], ")" + key +
-                                R"(": [[0.1, -0.2, 0.01, 0.02, 0.3]]})"))
-        .camera;
-  };
-  for (const char* key : {"dist_coeff", "dist_coefs", "distCoef", "distortion_vector", "coeffs"})
-    EXPECT_THAT(read(key).coefficients, ElementsAre(0.1, -0.2, 0.01, 0.02, 0.3)) << key;
-  EXPECT_THAT(error_of([&] { read("lensDistortion"); }),
-              HasSubstr("key `lensDistortion`: found an unknown key with 5 numbers, expected the "
-                        "key distortion_coefficients"));
-  const Camera nice =
-      read_calibration(folder.write("cam.json",
-                                    R"({"camera": {"fx": 60, "fy": 61, "cx": 31, "cy": 23,
-                                        "distortion": [0.1, -0.2, 0.01, 0.02, 0.3]}})"))
-          .camera;
-  EXPECT_EQ(nice.distortion, Distortion::radial_tangential);
-  EXPECT_THAT(nice.coefficients, ElementsAre(0.1, -0.2, 0.01, 0.02, 0.3));
-}
-
-TEST(LensFormats, TakeOrbSlamsPinholeWithoutCoefficientsAsUndistorted) {
-  const TestFolder folder;
-  const Camera camera =
-      read_calibration(folder.write("a.yaml",
-                                    "%YAML:1.0\nCamera.type: \"PinHole\"\nCamera1.fx: 60.0\n"
-                                    "Camera1.fy: 61.0\nCamera1.cx: 31.0\nCamera1.cy: 23.0\n"))
-          .camera;
-  EXPECT_EQ(camera.fy, 61);
-  EXPECT_EQ(camera.distortion, Distortion::none);
-}
-
-TEST(LensFormats, ReadTheTextOfRosCalibrator) {
-  const TestFolder folder;
-  const std::string text =
-      "# oST version 5.0 parameters\n\n\n[image]\n\nwidth\n640\n\nheight\n480\n\n"
-      "[narrow_stereo]\n\ncamera matrix\n500.5 0.000000 320.25\n0.000000 501.5 240.75\n"
-      "0.000000 0.000000 1.000000\n\ndistortion\n0.1 -0.2 0.001 0.002 0.000000\n\n"
-      "rectification\n1 0 0\n0 1 0\n0 0 1\n\nprojection\n490 0 320 0\n0 491 240 0\n0 0 1 0\n";
-  const auto file = folder.write("ost.txt", text);
-  EXPECT_EQ(find_calibration(folder.path()), file);
-  const Camera camera = read_calibration(file).camera;
-  EXPECT_EQ(camera.width, 640);
-  EXPECT_EQ(camera.fy, 501.5);
-  EXPECT_EQ(camera.cx, 320.25);
-  EXPECT_THAT(camera.coefficients, ElementsAre(0.1, -0.2, 0.001, 0.002, 0));
-  EXPECT_THAT(error_of([&] { read_calibration(folder.write("ost.txt", text.substr(0, 110))); }),
-              HasSubstr("numbers below \"camera matrix\", expected 9"));
-}
-
 TEST(LensFormats, ReadAllOfColmapsModels) {
   using enum Distortion;
   const TestFolder folder;
@@ -343,20 +291,6 @@ TEST_F(CalibrationBesideImages, IsFoundByItsKeys) {
   EXPECT_EQ(recording->camera_source, CameraSource::file);
   EXPECT_EQ(recording->camera.fx, 458.654);
   EXPECT_EQ(recording->files.front().use, "calibration (ORB-SLAM)");
-}
-
-TEST_F(CalibrationBesideImages, IsTheFileThatNamesTheOther) {
-  folder.write("cam0_mei.yaml", lens_files()[1].text);
-  folder.write("euroc_config.yaml",
-               "%YAML:1.0\ncam0_calib: \"cam0_mei.yaml\"\nbody_T_cam0: !!opencv-matrix\n   rows: "
-               "4\n   cols: 4\n   dt: d\n   data: " +
-                   kMatrix4 + "\ntd: -0.002\n");
-  EXPECT_EQ(open()->files.front().use, "calibration (VINS-Fusion)");
-}
-
-TEST_F(CalibrationBesideImages, MayHaveAnEndingInUpperCase) {
-  folder.write("Camera.YAML", lens_files()[10].text);
-  EXPECT_EQ(open()->camera_source, CameraSource::file);
 }
 
 TEST_F(CalibrationBesideImages, IsNamedWithTheReasonIfItIsNotRead) {

@@ -226,30 +226,6 @@ TEST_F(DataSets, GuessesTheLensOfTumWithoutACalibration) {
   EXPECT_EQ(open()->camera.fx, 60);
 }
 
-TEST_F(DataSets, LeavesOutFramesThatWereNotTracked) {
-  write_images("frame-{:06d}.color.png");
-  for (int i = 0; i < kFrames; ++i)
-    folder.write(fmt::format("frame-{:06d}.pose.txt", i), row_major(true_pose(i), 4));
-  const auto pose_1 = [&](const std::string& text) {
-    folder.write("frame-000001.pose.txt", text);
-    const auto recording = open();
-    EXPECT_THAT(recording->notes, Contains(HasSubstr(": 1 of 5 frames have no pose")));
-    return recording->truth && recording->truth->poses[0] && !recording->truth->poses[1];
-  };
-  const auto repeated = [](const std::string& word) {
-    std::string all;
-    for (int i = 0; i < 16; ++i) all += word + (i % 4 == 3 ? "\n" : " ");
-    return all;
-  };
-  for (const char* word : {"nan", "-inf", "-1.#IND", "0"})
-    EXPECT_TRUE(pose_1(repeated(word))) << word;
-  for (int i = 0; i < kFrames; ++i)
-    folder.write(fmt::format("frame-{:06d}.pose.txt", i), repeated("nan"));
-  const auto recording = open();
-  EXPECT_FALSE(recording->truth);
-  EXPECT_THAT(recording->notes, Contains(HasSubstr("found no pose, expected a pose of at least")));
-}
-
 TEST_F(DataSets, ReportPosesThatDoNotFitTheImages) {
   write_images("results/frame{:06d}.jpg");
   folder.write("traj.txt", row_major(true_pose(0), 4) + "\n");
