@@ -19,8 +19,6 @@ using Names = const char*;  ///< separated by blanks
 
 /// Names of OpenCV's samples, of ROS, and common ones; OpenCV itself does not define them.
 constexpr Names kMatrix = "camera_matrix cameraMatrix Camera_Matrix K k M1 mtx";
-constexpr Names kCoefficients =
-    "distortion_coefficients Distortion_Coefficients distCoeffs dist_coeffs distortion D d D1 dist";
 constexpr Names kWidth = "image_width image_Width imageWidth width";
 constexpr Names kHeight = "image_height image_Height imageHeight height";
 constexpr Names kSize = "image_size imageSize resolution size";
@@ -140,8 +138,8 @@ const KalibrModel& kalibr_model(const YamlEntry& root) {
 /// Returns the coefficients of the key `distortion_model`; empty for none.
 std::vector<double> euroc_coefficients(Camera& camera, const YamlEntry& root) {
   camera.distortion = distortion_model(at(root, "distortion_model", model_names()));
-  const auto euroc_key = find(root, "distortion_coefficients");
-  const auto entry = euroc_key ? euroc_key : find(root, "distortion_coeffs");
+  const auto entry = find_coefficients(root);
+  check_distortion_is_read(root, entry);
   if (entry) {
     set_coefficients(camera, *entry, numbers(*entry));
   } else if (camera.distortion != Distortion::none) {
@@ -209,7 +207,8 @@ Camera opencv_camera(const YamlEntry& root) {
   if (k[1] != 0 || k[3] != 0 || k[6] != 0 || k[7] != 0 || k[8] != 1)
     yaml_fail(matrix, "another matrix", "[fx, 0, cx, 0, fy, cy, 0, 0, 1]");
   set_intrinsics(camera, matrix, {k[0], k[4], k[2], k[5]});
-  const auto entry = find_any(root, kCoefficients);
+  const auto entry = find_coefficients(root);
+  check_distortion_is_read(root, entry);
   std::vector<double> coefficients = entry ? numbers(*entry) : std::vector<double>{};
   if (const auto xi = find(root, "xi")) {
     camera.distortion = Distortion::omnidirectional;
@@ -219,12 +218,14 @@ Camera opencv_camera(const YamlEntry& root) {
     convert_focal_lengths(camera);
     return camera;
   }
+  const auto model = find(root, "distortion_model");
+  if (!entry && model && distortion_model(*model) != Distortion::none)
+    at(root, "distortion_coefficients", "a list of numbers");
   if (coefficients.empty()) return camera;
   const auto fisheye = find(root, "fisheye_model");
   camera.distortion =
       fisheye && number(*fisheye) != 0 ? Distortion::equidistant : Distortion::radial_tangential;
-  if (const auto model = find(root, "distortion_model"))
-    camera.distortion = distortion_model(*model);
+  if (model) camera.distortion = distortion_model(*model);
   set_coefficients(camera, *entry, coefficients);
   return camera;
 }

@@ -137,6 +137,8 @@ Calibration read_basalt(const YamlEntry& root) {
   const auto type = at_path(root, "value0/intrinsics/0/camera_type", "a camera type");
   const NamedLens lens = lens_named(kLenses, type, text(type, "a camera type"));
   const std::string prefix = "value0/intrinsics/0/intrinsics/";
+  if (const auto camera = find_path(root, "value0/intrinsics/0/intrinsics"))
+    check_distortion_is_read(*camera, std::nullopt, lens.coefficients);
   set_size(result.camera, root, "value0/resolution/0/0", "value0/resolution/0/1");
   if (lens.name == std::string_view("ucm")) {
     const YamlEntry alpha = at_path(root, prefix + "alpha", kNumber);
@@ -168,6 +170,7 @@ Calibration read_orb_slam(const YamlEntry& root) {
   Camera& camera = result.camera;
   const bool old = !find(root, "Camera1.fx") && find(root, "Camera.fx");
   const std::string prefix = old ? "Camera." : "Camera1.";
+  check_distortion_is_read(root, std::nullopt);
   const auto type = find(root, "Camera.type");
   const NamedLens lens =
       type ? lens_named(kLenses, *type, text(*type, "a camera type")) : kLenses[0];
@@ -214,6 +217,7 @@ Calibration read_camodocal(const YamlEntry& root) {
   Calibration result;
   const auto type = at_path(root, "model_type", "PINHOLE, PINHOLE_FULL, MEI or KANNALA_BRANDT");
   const NamedLens lens = lens_named(kLenses, type, text(type, "a model"));
+  check_distortion_is_read(root, find(root, "distortion_parameters"));
   set_size(result.camera, root, "image_width", "image_height");
   set_named_lens(result.camera, root, "", lens);
   const auto rotation = find(root, "extrinsicRotation");
@@ -252,6 +256,7 @@ Calibration read_nerfstudio(const YamlEntry& root) {
   constexpr double kCenter_px = 0.5;
   Calibration result;
   Camera& camera = result.camera;
+  check_distortion_is_read(root, std::nullopt, "k1 k2 k3 k4 p1 p2");
   set_size(camera, root, "w", "h");
   const auto model = find(root, "camera_model");
   const auto fisheye = find(root, "is_fisheye");
@@ -289,12 +294,19 @@ Calibration read_nice_slam(const YamlEntry& root) {
   Calibration result;
   set_size(result.camera, root, "camera/w", "camera/h");
   set_named_lens(result.camera, root, "camera/", {"pinhole", Distortion::none, kPinholeKeys, ""});
+  const YamlEntry camera = at(root, "camera", "a camera");
+  const auto coefficients = find_coefficients(camera);
+  check_distortion_is_read(camera, coefficients);
+  const auto values = coefficients ? numbers(*coefficients) : std::vector<double>{};
+  if (!values.empty())
+    set_lens(result.camera, *coefficients, Distortion::radial_tangential, values);
   return result;
 }
 
 /// KITTI's calib.txt has 3x4 projection matrices of rectified cameras, calib_cam_to_cam.txt also.
 Calibration read_kitti(const YamlEntry& root) {
   Calibration result;
+  check_distortion_is_read(root, std::nullopt);
   for (const char* key : {"P_rect_00", "P0", "P1", "P2", "P3"}) {
     const auto entry = find(root, key);
     if (!entry) continue;

@@ -47,6 +47,13 @@ void set_resolution(Camera& camera, const YamlEntry& entry, double width, double
 /// `k`: fx, fy, cx, cy.
 void set_intrinsics(Camera& camera, const YamlEntry& entry, const std::array<double, 4>& k);
 void set_coefficients(Camera& camera, const YamlEntry& entry, std::vector<double> values);
+/// Returns the list of distortion coefficients under any of its usual keys; nullopt without one.
+std::optional<YamlEntry> find_coefficients(const YamlEntry& map);
+/// Throws InputError if a key of the map names a distortion other than zero, and is neither the entry
+/// `read` nor one of `others` (separated by blanks): the lens would be read as one without it.
+void check_distortion_is_read(const YamlEntry& map,
+                              const std::optional<YamlEntry>& read,
+                              const std::string& others = "");
 /// Converts the focal lengths of a model's authors to ours, at the principal point.
 void convert_focal_lengths(Camera& camera);
 /// Sets the offset from seconds; `rate_hz` likewise.

@@ -1,6 +1,7 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/base/error.h"
+#include "engine/files/text_file.h"
 #include "engine/geometry/decompositions.h"
 #include "engine/recording/companions/lens_formats.h"
 
@@ -22,6 +23,45 @@ std::string counts_text(const std::vector<std::size_t>& counts) {
   for (std::size_t i = 0; i < counts.size(); ++i)
     text += fmt::format("{}{}", i == 0 ? "" : i + 1 < counts.size() ? ", " : " or ", counts[i]);
   return text;
+}
+
+/// Spellings in lower case without underscores, in the order of their precedence.
+constexpr const char* kCoefficientKeys =
+    "distortioncoefficients distortioncoeffs distortioncoefs distortioncoefficient distortioncoeff "
+    "distortioncoef distcoeffs distcoefs distcoefficients distcoeff distcoef distcoefficient "
+    "distortionvector coefficients coeffs distortion d d1 dist";
+/// Keys of every format that describe a distortion and are read elsewhere.
+constexpr const char* kReadElsewhere = "distortion_model distortion_coefficients_sigma";
+
+std::string plain_key(const std::string& key) {
+  std::string plain = lower_case(key);
+  std::erase(plain, '_');
+  return plain;
+}
+
+bool is_one_of(const std::string& names, const std::string& name) {
+  return std::ranges::count(split(names, ' '), name) > 0;
+}
+
+/// Returns whether a key's name announces a distortion; `min_dist` of VINS and distances do not.
+bool names_distortion(const std::string& key) {
+  const std::string name = lower_case(key);
+  const auto has = [&](const char* part) { return name.find(part) != std::string::npos; };
+  if (has("distance") || has("distribut") || name == "min_dist" || name == "max_dist") return false;
+  return has("dist") || has("coef") || is_one_of("k1 k2 k3 k4 p1 p2", key);
+}
+
+/// Returns whether a value states that there is no distortion.
+bool is_no_distortion(const YAML::Node& node) {
+  const auto is_none = [](const auto& item) { return is_no_distortion(item); };
+  if (node.IsScalar())
+    return is_one_of("none no false ~ null", lower_case(node.Scalar())) || node.Scalar().empty() ||
+           parse_number(node.Scalar()) == 0.0;
+  if (node.IsSequence()) return std::all_of(node.begin(), node.end(), is_none);
+  if (!node.IsMap()) return true;
+  if (const YAML::Node data = node["data"]) return is_no_distortion(data);
+  return std::all_of(
+      node.begin(), node.end(), [](const auto& item) { return is_no_distortion(item.second); });
 }
 
 }  // namespace
@@ -66,6 +106,31 @@ void set_coefficients(Camera& camera, const YamlEntry& entry, std::vector<double
   camera.coefficients = std::move(values);
   if (const auto fault = coefficient_fault(camera))
     yaml_fail(entry, *fault, fmt::format("a lens of the model {}", model.name));
+}
+
+std::optional<YamlEntry> find_coefficients(const YamlEntry& map) {
+  if (!map.node.IsMap()) return std::nullopt;
+  for (const std::string& name : split(kCoefficientKeys, ' '))
+    for (const auto& item : map.node)
+      if (item.first.IsScalar() && plain_key(item.first.Scalar()) == name)
+        return below(map, item.first.Scalar(), item.second);
+  return std::nullopt;
+}
+
+void check_distortion_is_read(const YamlEntry& map,
+                              const std::optional<YamlEntry>& read,
+                              const std::string& others) {
+  if (!map.node.IsMap()) return;
+  for (const auto& item : map.node) {
+    if (!item.first.IsScalar()) continue;
+    const std::string& key = item.first.Scalar();
+    const bool known = (read && item.second.is(read->node)) || is_one_of(others, key) ||
+                       is_one_of(kReadElsewhere, key);
+    if (!known && names_distortion(key) && !is_no_distortion(item.second))
+      yaml_fail(below(map, key, item.second),
+                "a distortion that is not read",
+                "the key `distortion_coefficients` or the keys of the file's format");
+  }
 }
 
 void convert_focal_lengths(Camera& camera) {

@@ -277,6 +277,64 @@ TEST(LensFormats, BlameTheKeyThatIsMissing) {
               HasSubstr("found 2 cameras, expected one camera for all images"));
 }
 
+TEST(LensFormats, ReadDistortionsUnderTheirUsualKeys) {
+  const TestFolder folder;
+  const std::string pinhole =
+      R"({"camera_matrix": [[500, 0, 320], [0, 500, 240], [0, 0, 1]], "KEY": [0.1, -0.2, 0, 0]})";
+  const std::string inside =
+      R"({"camera": {"fx": 500, "fy": 500, "cx": 320, "cy": 240, "KEY": [0.1, -0.2, 0, 0]}})";
+  for (const char* key : {"distortion_coefficients",
+                          "Distortion_Coefficients",
+                          "dist_coeffs",
+                          "dist_coeff",
+                          "dist_coefs",
+                          "distCoef",
+                          "distortion_coefficient",
+                          "distortion_vector",
+                          "distortion",
+                          "coeffs",
+                          "D"})
+    for (std::string text : {pinhole, inside}) {
+      text.replace(text.find("KEY"), 3, key);
+      const Camera camera = read_calibration(folder.write("calibration.json", text)).camera;
+      EXPECT_EQ(camera.distortion, Distortion::radial_tangential) << text;
+      EXPECT_THAT(camera.coefficients, ElementsAre(0.1, -0.2, 0, 0)) << text;
+    }
+}
+
+TEST(LensFormats, RefuseADistortionUnderAnUnknownKey) {
+  const TestFolder folder;
+  const auto error = [&](const std::string& text) {
+    return error_of([&] { read_calibration(folder.write("calibration.yaml", text)); });
+  };
+  const std::string opencv = "camera_matrix: [500, 0, 320, 0, 500, 240, 0, 0, 1]\n";
+  const std::string euroc =
+      "resolution: [640, 480]\nintrinsics: [500, 500, 320, 240]\ndistortion_model: none\n";
+  const std::string nice = "camera: {fx: 500, fy: 500, cx: 320, cy: 240, my_dist: [0.1, 0.2]}\n";
+  const std::string kitti = "P0: 700 0 600 0 0 700 180 0 0 0 1 0\n";
+  const std::string kUnread = "`: found a distortion that is not read, expected the key "
+                              "`distortion_coefficients` or the keys of the file's format";
+  EXPECT_THAT(error(opencv + "Distortion_K: [0.1, 0.2]\n"),
+              HasSubstr("calibration.yaml:2: key `Distortion_K" + kUnread));
+  EXPECT_THAT(error(opencv + "k1: 0.1\n"), HasSubstr("key `k1" + kUnread));
+  EXPECT_THAT(error(opencv + "D: [0.1, 0, 0, 0]\nradial_coefs: [0.1]\n"),
+              HasSubstr("key `radial_coefs" + kUnread));
+  EXPECT_THAT(error(opencv + "distortion_model: plumb_bob\n"),
+              HasSubstr("key `distortion_coefficients`: found no value"));
+  EXPECT_THAT(error(nice), HasSubstr("key `camera.my_dist" + kUnread));
+  for (const std::string& text :
+       {euroc, kitti, "cam0: {resolution: [640, 480], intrinsics: [500, 500, 320, 240], "
+                      "distortion_model: none}\n" })
+    EXPECT_EQ(error(text), "");
+  EXPECT_THAT(error(euroc + "lens_coef: [0.1]\n"), HasSubstr("key `lens_coef" + kUnread));
+  EXPECT_THAT(error(kitti + "distortion_0: 0.1 0.2\n"), HasSubstr("key `distortion_0" + kUnread));
+  for (const std::size_t program : {1, 10, 13})
+    EXPECT_THAT(error(lens_files()[program].text + "dist_terms: [0.1]\n"),
+                HasSubstr("key `dist_terms" + kUnread))
+        << lens_files()[program].name;
+  EXPECT_EQ(error(opencv + "distCoef5: [0, 0.0, 0]\nmin_dist: 30\ndistance: 2\nD: []\n"), "");
+}
+
 class CalibrationBesideImages : public RecordingFolder {
  protected:
   CalibrationBesideImages() {
