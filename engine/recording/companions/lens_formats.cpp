@@ -172,8 +172,12 @@ Calibration read_orb_slam(const YamlEntry& root) {
   const std::string prefix = old ? "Camera." : "Camera1.";
   check_distortion_is_read(root, std::nullopt);
   const auto type = find(root, "Camera.type");
-  const NamedLens lens =
-      type ? lens_named(kLenses, *type, text(*type, "a camera type")) : kLenses[0];
+  NamedLens lens = type ? lens_named(kLenses, *type, text(*type, "a camera type")) : kLenses[0];
+  // Settings.cc reads the distortion of a pinhole only if it exists.
+  const auto is_missing = [&](const std::string& key) { return !find(root, prefix + key); };
+  if (lens.distortion == radial_tangential &&
+      std::ranges::all_of(split("k1 k2 p1 p2 k3", ' '), is_missing))
+    lens = kLenses.back();
   set_size(camera, root, "Camera.width", "Camera.height");
   set_named_lens(camera, root, prefix, lens);
   const auto k3 = find(root, prefix + "k3");

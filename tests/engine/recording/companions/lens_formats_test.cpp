@@ -302,6 +302,21 @@ TEST(LensFormats, ReadDistortionsUnderTheirUsualKeys) {
     }
 }
 
+TEST(LensFormats, ReadOrbSlamsPinholeWithoutDistortion) {
+  const TestFolder folder;
+  for (const char* prefix : {"Camera1.", "Camera."}) {
+    std::string text = "Camera.type: \"PinHole\"\n";
+    for (const char* line : {"fx: 500\n", "fy: 501\n", "cx: 320\n", "cy: 240\n"})
+      text += std::string(prefix) + line;
+    const auto file = folder.write("settings.yaml", text);
+    EXPECT_EQ(read_calibration(file).camera.distortion, Distortion::none);
+    EXPECT_EQ(read_calibration(file).camera.fy, 501);
+    folder.write("settings.yaml", text + prefix + "k2: 0.1\n");
+    EXPECT_THAT(error_of([&] { read_calibration(file); }),
+                HasSubstr(std::string("key `") + prefix + "k1`: found no value"));
+  }
+}
+
 TEST(LensFormats, RefuseADistortionUnderAnUnknownKey) {
   const TestFolder folder;
   const auto error = [&](const std::string& text) {
@@ -325,14 +340,14 @@ TEST(LensFormats, RefuseADistortionUnderAnUnknownKey) {
   for (const std::string& text :
        {euroc, kitti, "cam0: {resolution: [640, 480], intrinsics: [500, 500, 320, 240], "
                       "distortion_model: none}\n" })
-    EXPECT_EQ(error(text), "");
+    EXPECT_EQ(error(text), "no error");
   EXPECT_THAT(error(euroc + "lens_coef: [0.1]\n"), HasSubstr("key `lens_coef" + kUnread));
   EXPECT_THAT(error(kitti + "distortion_0: 0.1 0.2\n"), HasSubstr("key `distortion_0" + kUnread));
   for (const std::size_t program : {1, 10, 13})
     EXPECT_THAT(error(lens_files()[program].text + "dist_terms: [0.1]\n"),
                 HasSubstr("key `dist_terms" + kUnread))
         << lens_files()[program].name;
-  EXPECT_EQ(error(opencv + "distCoef5: [0, 0.0, 0]\nmin_dist: 30\ndistance: 2\nD: []\n"), "");
+  EXPECT_EQ(error(opencv + "distCoef5: [0, 0.0, 0]\nmin_dist: 30\ndistance: 2\nD: []\n"), "no error");
 }
 
 class CalibrationBesideImages : public RecordingFolder {
