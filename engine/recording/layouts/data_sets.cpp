@@ -9,7 +9,7 @@
 #include "engine/recording/companions/companion_files.h"
 
 #include <algorithm>
-#include <cmath>
+#include <limits>
 
 #include <Eigen/LU>
 #include <nlohmann/json.hpp>
@@ -30,8 +30,9 @@ struct DataSet {
   Poses (*read)(const fs::path& file, const Files& images);
 };
 
-/// Reads the first 12 of row-major numbers as a rigid transformation.
-Pose pose_of(std::span<const double> T, const std::string& place) {
+/// Returns the first 12 of row-major numbers as a rigid transformation; nullopt if they are none,
+/// as those of frames that were not tracked.
+std::optional<Pose> pose_of(std::span<const double> T) {
   constexpr double kTolerance = 1e-2;  // for files with few digits
   Pose pose;
   for (int row = 0; row < 3; ++row) {
@@ -42,38 +43,57 @@ Pose pose_of(std::span<const double> T, const std::string& place) {
   if (!pose.p_wc.allFinite() ||
       !((R.transpose() * R - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff() < kTolerance) ||
       R.determinant() < 0)
-    fail_at(place, "a matrix that is no pose", "a rotation and a translation");
+    return std::nullopt;
   pose.R_wc = nearest_rotation(R);
   return pose;
+}
+
+/// Returns whether a word is a number that is not finite, as printf writes it: "-nan", "inf",
+/// "-1.#IND", "nan(ind)".
+bool is_not_finite(std::string_view word) {
+  std::string name = lower_case(word);
+  if (name.starts_with('-') || name.starts_with('+')) name.erase(0, 1);
+  return name.starts_with("nan") || name == "inf" || name == "infinity" || name.starts_with("1.#");
 }
 
 std::vector<double> numbers_of(std::string_view line, const std::string& place) {
   std::vector<double> values;
   while (!line.empty()) {
-    const auto value = parse_number(take_word(line));
-    if (!value) fail_at(place, "no number", "numbers separated by blanks");
-    values.push_back(*value);
+    const std::string_view word = take_word(line);
+    const auto value = parse_number(word);
+    if (!value && !is_not_finite(word)) fail_at(place, "no number", "numbers separated by blanks");
+    values.push_back(value.value_or(std::numeric_limits<double>::quiet_NaN()));
   }
   return values;
+}
+
+/// Returns the poses. Throws InputError if there are matrices and none of them is a pose.
+Poses with_a_pose(Poses poses, const std::string& first_place) {
+  const auto has_pose = [](const auto& pose) { return pose.has_value(); };
+  if (!poses.empty() && std::ranges::none_of(poses, has_pose))
+    fail_at(first_place, "a matrix that is no pose", "a rotation and a translation");
+  return poses;
 }
 
 /// Reads one matrix of `count` numbers in each row, one for each image.
 Poses rows_of(const fs::path& file, std::size_t count, const Files& images) {
   Poses poses;
+  std::string first_place;
   const std::string text = read_file(file);
   TextLines lines(text);
   while (const auto line = lines.next()) {
     if (line->empty()) continue;
     const std::string place = place_in(file, lines.number());
+    if (poses.empty()) first_place = place;
     const auto values = numbers_of(*line, place);
     if (values.size() != count)
       fail_at(place, counted(values.size(), "number"), fmt::format("{} of a pose", count));
-    poses.emplace_back(pose_of(values, place));
+    poses.push_back(pose_of(values));
   }
   if (poses.size() != images.size())
     fail_at(
         file, counted(poses.size(), "pose"), fmt::format("{}, one for each image", images.size()));
-  return poses;
+  return with_a_pose(std::move(poses), first_place);
 }
 
 std::optional<fs::path> find_kitti(const fs::path& folder, const Files& /*images*/) {
@@ -105,7 +125,7 @@ std::optional<fs::path> find_seven_scenes(const fs::path& /*folder*/, const File
   return if_file(seven_scenes_pose(images.front()));
 }
 
-Poses read_seven_scenes(const fs::path& /*file*/, const Files& images) {
+Poses read_seven_scenes(const fs::path& first, const Files& images) {
   Poses poses;
   for (const fs::path& image : images) {
     const fs::path file = seven_scenes_pose(image);
@@ -118,11 +138,9 @@ Poses read_seven_scenes(const fs::path& /*file*/, const Files& images) {
         text, [](char c) { return c == '\n' || c == '\r' || c == '\t'; }, ' ');
     const auto values = numbers_of(trimmed(text), file.string());
     if (values.size() != 16) fail_at(file, counted(values.size(), "number"), "16 (a 4x4 matrix)");
-    // Frames that were not tracked have a matrix that is no pose.
-    const bool tracked = std::ranges::all_of(values, [](double v) { return std::isfinite(v); });
-    poses.push_back(tracked ? std::optional(pose_of(values, file.string())) : std::nullopt);
+    poses.push_back(pose_of(values));
   }
-  return poses;
+  return with_a_pose(std::move(poses), first.string());
 }
 
 /// Returns the poses of the images with the same name, or with the same end of it.
@@ -162,8 +180,9 @@ Poses read_nerfstudio_poses(const fs::path& file, const Files& images) {
   if (!json.is_object() || !json.contains("frames") || !json["frames"].is_array())
     fail_at(file, "no list `frames`", "images and their poses");
   NamedPoses named;
+  int number = 1;
   for (const Json& frame : json["frames"]) {
-    const std::string place = fmt::format("{}: frame {}", file.string(), named.names.size() + 1);
+    const std::string place = fmt::format("{}: frame {}", file.string(), number);
     const bool whole = frame.is_object() && frame.contains("file_path") &&
                        frame["file_path"].is_string() && frame.contains("transform_matrix");
     if (!whole) fail_at(place, "no `file_path` or `transform_matrix`", "both");
@@ -173,10 +192,12 @@ Poses read_nerfstudio_poses(const fs::path& file, const Files& images) {
       T.push_back(value.get<double>());
     }
     if (T.size() != 16) fail_at(place, counted(T.size(), "number"), "16 (a 4x4 matrix)");
-    Pose pose = pose_of(T, place);
-    pose.R_wc = pose.R_wc * Eigen::Vector3d(1, -1, -1).asDiagonal();
+    auto pose = pose_of(T);
+    ++number;
+    if (!pose) continue;
+    pose->R_wc = pose->R_wc * Eigen::Vector3d(1, -1, -1).asDiagonal();
     named.names.push_back(frame["file_path"].get<std::string>());
-    named.poses.push_back(pose);
+    named.poses.push_back(*pose);
   }
   return by_name(named, images, file);
 }
@@ -198,7 +219,11 @@ void add_data_set_truth(Recording& recording, const fs::path& folder) {
     try {
       recording.truth = GroundTruth{fmt::format("{} ({})", file->filename().string(), set.name),
                                     set.read(*file, recording.image_files)};
-      recording.truth->jumps = jumps_of(recording.timestamps_ns, recording.truth->poses);
+      const auto& poses = recording.truth->poses;
+      if (const auto without = std::ranges::count_if(poses, [](const auto& pose) { return !pose; }); without > 0)
+        recording.notes.push_back(
+            fmt::format("{} of {} images have no pose in the ground truth", without, poses.size()));
+      recording.truth->jumps = jumps_of(recording.timestamps_ns, poses);
       recording.files.push_back({*file, fmt::format("ground truth ({})", set.name), ""});
       return;
     } catch (const InputError& error) {

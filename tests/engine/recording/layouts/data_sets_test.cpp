@@ -90,6 +90,46 @@ TEST_F(DataSets, ReadsTheColorImagesAndPosesOfSevenScenes) {
               Contains(Field(&FoundFile::reason, HasSubstr("5 images: depth, by its name"))));
 }
 
+const std::string kNoPoses[] = {"nan nan nan nan nan nan nan nan nan nan nan nan 0 0 0 1",
+                                "-inf inf 0 0 0 1 0 0 0 0 1 0 0 0 0 1",
+                                "-1.#IND 1.#QNAN 0 0 0 1 0 0 0 0 1 0 0 0 0 1",
+                                "0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0"};
+
+TEST_F(DataSets, ReadsSevenScenesWithAFrameThatWasNotTracked) {
+  write_images("frame-{:06d}.color.png");
+  for (const std::string& lost : kNoPoses) {
+    for (int i = 0; i < kFrames; ++i)
+      folder.write(fmt::format("frame-{:06d}.pose.txt", i),
+                   i == 3 ? lost : row_major(true_pose(i), 4));
+    const auto recording = open();
+    ASSERT_TRUE(recording->truth) << lost;
+    for (int i = 0; i < kFrames; ++i) EXPECT_EQ(recording->truth->poses[i].has_value(), i != 3);
+    EXPECT_THAT(recording->notes, Contains("1 of 5 images have no pose in the ground truth"));
+  }
+  for (int i = 0; i < kFrames; ++i)
+    folder.write(fmt::format("frame-{:06d}.pose.txt", i), kNoPoses[0]);
+  EXPECT_FALSE(open()->truth);
+  EXPECT_THAT(open()->notes,
+              Contains("no ground truth from 7-Scenes: " + file("frame-000000.pose.txt") +
+                       ": found a matrix that is no pose, expected a rotation and a translation"));
+}
+
+TEST_F(DataSets, ReadsReplicaWithARowThatIsNoPose) {
+  write_images("results/frame{:06d}.jpg");
+  for (const std::string& lost : kNoPoses) {
+    std::string rows = lost + "\n";
+    for (int i = 1; i < kFrames; ++i) rows += row_major(true_pose(i), 4) + "\n";
+    folder.write("traj.txt", rows);
+    const auto recording = open();
+    ASSERT_TRUE(recording->truth) << lost;
+    EXPECT_FALSE(recording->truth->poses[0]);
+    EXPECT_TRUE(recording->truth->poses[1]);
+    EXPECT_THAT(recording->notes, Contains("1 of 5 images have no pose in the ground truth"));
+  }
+  folder.write("traj.txt", "1 2 three\n");
+  EXPECT_THAT(open()->notes, Contains(HasSubstr("traj.txt:1: found no number, expected")));
+}
+
 TEST_F(DataSets, ReadsReplicasScene) {
   write_images("room/results/frame{:06d}.jpg");
   write_images("room/results/depth{:06d}.png", true);
