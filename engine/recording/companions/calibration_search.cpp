@@ -102,6 +102,23 @@ std::optional<fs::path> by_name(const fs::path& folder) {
   return chains.empty() ? std::nullopt : std::optional(chains.front());
 }
 
+/// Returns the file that has the camera of this one; nullopt if it has the camera itself.
+std::optional<fs::path> camera_file_of(const fs::path& file) {
+  try {
+    return named_camera_file(load_lens_file(file));
+  } catch (const InputError&) {
+    return std::nullopt;
+  }
+}
+
+/// Reports the file that the calibration itself reads.
+void mark_camera_file(CalibrationSearch& search) {
+  const auto camera = search.file ? camera_file_of(*search.file) : std::nullopt;
+  for (FoundFile& one : search.unused)
+    if (camera && one.file == *camera)
+      one = {one.file, fmt::format("camera of {}", search.file->filename().string()), ""};
+}
+
 void search_folder(const fs::path& folder, CalibrationSearch& search) {
   constexpr std::size_t kMostFiles = 200;
   if (!is_folder(folder)) return;
@@ -119,10 +136,15 @@ void search_folder(const fs::path& folder, CalibrationSearch& search) {
     if (fault->empty() && !search.file) {
       search.file = file;
       search.by_content = true;
+    } else if (fault->empty() && camera_file_of(file) == search.file) {
+      // It has what the camera's file lacks: extrinsics and the time offset.
+      search.unused.push_back({*search.file, "", "another file is used"});
+      search.file = file;
     } else {
       search.unused.push_back({file, "", fault->empty() ? "another file is used" : *fault});
     }
   }
+  mark_camera_file(search);
 }
 
 }  // namespace
@@ -147,6 +169,7 @@ void report_calibration(Recording& recording,
         {*search.file, fmt::format("calibration ({})", calibration.format), ""});
   for (const FoundFile& one : search.unused) {
     recording.files.push_back(one);
+    if (!one.use.empty()) continue;
     if (search.file && !search.by_content) continue;  // `info` lists it
     recording.notes.push_back(fmt::format("{} looks like a calibration and is not read: {}",
                                           one.file.filename().string(),

@@ -243,10 +243,16 @@ Calibration read_camodocal(const YamlEntry& root) {
   return result;
 }
 
+std::optional<fs::path> named_camera_file(const YamlEntry& root) {
+  const auto name = root.node.IsMap() ? find(root, "cam0_calib") : std::nullopt;
+  if (!name) return std::nullopt;
+  return folder_of(root.file) / fs::path(text(*name, "a file")).filename();
+}
+
 /// HKUST's VINS-Fusion: the lens is in another file.
 Calibration read_vins_fusion(const YamlEntry& root) {
   const YamlEntry name = at(root, "cam0_calib", "a file");
-  const fs::path file = folder_of(root.file) / fs::path(text(name, "a file")).filename();
+  const fs::path file = *named_camera_file(root);
   if (!is_file(file)) yaml_fail(name, "no such file", "the camera's file in the same folder");
   const YamlEntry lens = load_lens_file(file);
   Calibration result = read_camodocal(lens);

@@ -24,6 +24,10 @@ const LensFormat* lens_format_of(const YamlEntry& root);
 /// Parses a lens file of any syntax. Throws InputError.
 YamlEntry load_lens_file(const fs::path& file);
 
+/// Returns the file in the same folder that has the camera of VINS-Fusion's configuration; nullopt
+/// for other files. Throws InputError.
+std::optional<fs::path> named_camera_file(const YamlEntry& root);
+
 /// A format of lens files without keys.
 struct LensTable {
   const char* name;

@@ -366,6 +366,28 @@ TEST_F(CalibrationBesideImages, IsFoundByItsKeys) {
   EXPECT_EQ(recording->files.front().use, "calibration (ORB-SLAM)");
 }
 
+/// The configuration has the extrinsics and the time offset, whatever the files' names.
+TEST_F(CalibrationBesideImages, IsVinsFusionsConfigurationAndNotTheCameraItNames) {
+  const std::string config =
+      "%YAML:1.0\nimage_width: 752\nbody_T_cam0: !!opencv-matrix\n   rows: 4\n   cols: 4\n"
+      "   dt: d\n   data: " +
+      kMatrix4 + "\ntd: -0.002\ncam0_calib: ";
+  for (const char* camera : {"cam0_pinhole.yaml", "zcam0_pinhole.yaml", "camera.yaml"}) {
+    const auto lens = folder.write(camera, lens_files()[1].text);
+    const auto file = folder.write("euroc_mono_imu_config.yaml", config + camera + "\n");
+    const auto recording = open();
+    EXPECT_EQ(find_calibration(folder.path()), file) << camera;
+    ASSERT_TRUE(recording->T_body_camera) << camera;
+    EXPECT_GT(recording->T_body_camera->R_wc(1, 0), 0.99);
+    EXPECT_THAT(recording->files,
+                testing::Contains(testing::Field(&FoundFile::use,
+                                                 "camera of euroc_mono_imu_config.yaml")))
+        << camera;
+    EXPECT_THAT(recording->notes, testing::Not(testing::Contains(HasSubstr("not read")))) << camera;
+    std::filesystem::remove(lens);
+  }
+}
+
 TEST_F(CalibrationBesideImages, IsNamedWithTheReasonIfItIsNotRead) {
   std::string broken = lens_files()[10].text;
   broken.replace(broken.find("Camera1.fy"), 10, "Camera1.fz");
