@@ -184,7 +184,8 @@ std::string recording_endings() {
 }
 
 bool is_yaml_name(const fs::path& file) {
-  return file.extension() == ".yaml" || file.extension() == ".yml";
+  constexpr std::array<Ending, 2> kYaml = {"yaml", "yml"};
+  return ends_in(file, kYaml);
 }
 
 bool is_recipe(const fs::path& path) {

@@ -22,10 +22,12 @@ std::vector<std::string> calibration_names() {
   return names;
 }
 
+std::string plain_name(const fs::path& file) { return lower_case(file.filename().string()); }
+std::string plain_ending(const fs::path& file) { return lower_case(file.extension().string()); }
+
 /// Kalibr adds the bag's name: "camchain-imucam-desk.yaml", "desk-camchain.yaml".
 bool is_camchain(const fs::path& file) {
-  const std::string name = file.filename().string();
-  return name.find("camchain") != std::string::npos && file.extension() == ".yaml";
+  return plain_name(file).find("camchain") != std::string::npos && plain_ending(file) == ".yaml";
 }
 
 bool has_word(const std::string& text, Names words) {
@@ -43,18 +45,18 @@ constexpr const char* kColmapBinary = "cameras.bin";
 
 bool is_text(const fs::path& file) {
   const auto endings = {".yaml", ".yml", ".xml", ".json", ".txt"};
-  return std::ranges::count(endings, file.extension().string()) > 0;
+  return std::ranges::count(endings, plain_ending(file)) > 0;
 }
 
 /// Names that announce a calibration; a text file must have one to be read at all.
 bool is_named_calibration(const fs::path& file) {
-  const std::string name = lower_case(file.filename().string());
+  const std::string name = plain_name(file);
   return has_word(name, kCalibrationNames) && !has_word(name, kOthers) && !is_image_name(file) &&
          !is_video_name(file) && !is_bag_name(file);
 }
 
 bool has_other_meaning(const fs::path& file) {
-  return has_word(lower_case(file.filename().string()), kOthers);
+  return has_word(plain_name(file), kOthers);
 }
 
 std::string without_place(const std::string& message, const fs::path& file) {
@@ -80,7 +82,7 @@ std::optional<std::string> fault_of(const fs::path& file) {
   const bool readable = (binary || is_text(file)) && fs::file_size(file, none) <= kMostBytes;
   if (!readable)
     return likely ? std::optional<std::string>("not a format that is read") : std::nullopt;
-  if (has_other_meaning(file) || (file.extension() == ".txt" && !likely)) return std::nullopt;
+  if (has_other_meaning(file) || (plain_ending(file) == ".txt" && !likely)) return std::nullopt;
   try {
     const std::string bytes = read_file(file);
     likely = likely || binary || is_worded_calibration(bytes);
@@ -96,8 +98,12 @@ std::optional<std::string> fault_of(const fs::path& file) {
 }
 
 std::optional<fs::path> by_name(const fs::path& folder) {
-  for (const std::string& name : calibration_names())
+  const auto files = files_of_kind(folder, is_text);
+  for (const std::string& name : calibration_names()) {
     if (is_file(folder / name)) return folder / name;
+    const auto other = std::ranges::find(files, name, plain_name);
+    if (other != files.end()) return *other;
+  }
   const auto chains = files_of_kind(folder, is_camchain);
   return chains.empty() ? std::nullopt : std::optional(chains.front());
 }
@@ -125,7 +131,7 @@ void search_folder(const fs::path& folder, CalibrationSearch& search) {
   const auto named = by_name(folder);
   if (!search.file) search.file = named;
   auto files = files_of_kind(folder, [](const fs::path& file) {
-    const bool structured = is_text(file) && file.extension() != ".txt";
+    const bool structured = is_text(file) && plain_ending(file) != ".txt";
     return structured || is_named_calibration(file) || file.filename() == kColmapBinary;
   });
   files.resize(std::min(files.size(), kMostFiles));

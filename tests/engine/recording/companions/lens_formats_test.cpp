@@ -366,6 +366,18 @@ TEST_F(CalibrationBesideImages, IsFoundByItsKeys) {
   EXPECT_EQ(recording->files.front().use, "calibration (ORB-SLAM)");
 }
 
+TEST_F(CalibrationBesideImages, MayHaveAnEndingInUpperCase) {
+  for (const char* name : {"Camera.YAML", "CALIB.YML", "desk-CAMCHAIN.Yaml", "settings.YAML"}) {
+    const auto file = folder.write(name, lens_files()[5].text);
+    EXPECT_EQ(find_calibration(folder.path()), file);
+    EXPECT_EQ(open()->camera_source, CameraSource::file) << name;
+    std::filesystem::remove(file);
+  }
+  folder.write("a.yaml", lens_files()[10].text);
+  const auto usual = folder.write("Camera.YAML", lens_files()[5].text);
+  EXPECT_EQ(find_calibration(folder.path()), usual);
+}
+
 /// The configuration has the extrinsics and the time offset, whatever the files' names.
 TEST_F(CalibrationBesideImages, IsVinsFusionsConfigurationAndNotTheCameraItNames) {
   const std::string config =
