@@ -44,19 +44,27 @@ constexpr Names kCalibrationWords = "distort intrinsic focal fl_x camera_matrix 
 constexpr const char* kColmapBinary = "cameras.bin";
 
 bool is_text(const fs::path& file) {
-  const auto endings = {".yaml", ".yml", ".xml", ".json", ".txt"};
+  const auto endings = {".yaml", ".yml", ".xml", ".json", ".txt", ".ini"};
   return std::ranges::count(endings, plain_ending(file)) > 0;
 }
 
-/// Names that announce a calibration; a text file must have one to be read at all.
+/// Names that announce a calibration.
 bool is_named_calibration(const fs::path& file) {
   const std::string name = plain_name(file);
   return has_word(name, kCalibrationNames) && !has_word(name, kOthers) && !is_image_name(file) &&
          !is_video_name(file) && !is_bag_name(file);
 }
 
-bool has_other_meaning(const fs::path& file) {
-  return has_word(plain_name(file), kOthers);
+bool has_other_meaning(const fs::path& file) { return has_word(plain_name(file), kOthers); }
+
+/// Texts without a telling name, such as ROS' ost.txt, are read only if their words announce a
+/// calibration. Prose may contain such words, too.
+bool is_unnamed_text(const fs::path& file) {
+  constexpr Names kProse = "readme license notes changelog";
+  constexpr std::uintmax_t kMostBytes = 1 << 16;
+  std::error_code none;
+  return plain_ending(file) == ".txt" && !is_named_calibration(file) && !has_other_meaning(file) &&
+         !has_word(plain_name(file), kProse) && fs::file_size(file, none) <= kMostBytes;
 }
 
 std::string without_place(const std::string& message, const fs::path& file) {
@@ -82,10 +90,11 @@ std::optional<std::string> fault_of(const fs::path& file) {
   const bool readable = (binary || is_text(file)) && fs::file_size(file, none) <= kMostBytes;
   if (!readable)
     return likely ? std::optional<std::string>("not a format that is read") : std::nullopt;
-  if (has_other_meaning(file) || (plain_ending(file) == ".txt" && !likely)) return std::nullopt;
+  if (has_other_meaning(file)) return std::nullopt;
   try {
     const std::string bytes = read_file(file);
     likely = likely || binary || is_worded_calibration(bytes);
+    if (!likely && plain_ending(file) == ".txt") return std::nullopt;
     const bool known =
         lens_table_of(file, bytes) != nullptr || lens_format_of(load_lens_file(file)) != nullptr;
     likely = likely || known;
@@ -132,8 +141,10 @@ void search_folder(const fs::path& folder, CalibrationSearch& search) {
   if (!search.file) search.file = named;
   auto files = files_of_kind(folder, [](const fs::path& file) {
     const bool structured = is_text(file) && plain_ending(file) != ".txt";
-    return structured || is_named_calibration(file) || file.filename() == kColmapBinary;
+    return structured || is_named_calibration(file) || is_unnamed_text(file) ||
+           file.filename() == kColmapBinary;
   });
+  std::stable_partition(files.begin(), files.end(), std::not_fn(is_unnamed_text));
   files.resize(std::min(files.size(), kMostFiles));
   for (const fs::path& file : files) {
     if (search.file && *search.file == file) continue;

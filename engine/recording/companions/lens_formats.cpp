@@ -346,7 +346,8 @@ const LensFormat* lens_format_of(const YamlEntry& root) {
 
 YamlEntry load_lens_file(const fs::path& file) {
   std::error_code none;
-  if (lower_case(file.extension().string()) == ".json" && fs::file_size(file, none) > limits().hand_bytes)
+  if (lower_case(file.extension().string()) == ".json" &&
+      fs::file_size(file, none) > limits().hand_bytes)
     return without_frames(file);
   return is_xml(file) ? load_opencv_xml(file) : load_yaml(file);
 }

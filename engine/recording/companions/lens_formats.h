@@ -53,8 +53,9 @@ void set_intrinsics(Camera& camera, const YamlEntry& entry, const std::array<dou
 void set_coefficients(Camera& camera, const YamlEntry& entry, std::vector<double> values);
 /// Returns the list of distortion coefficients under any of its usual keys; nullopt without one.
 std::optional<YamlEntry> find_coefficients(const YamlEntry& map);
-/// Throws InputError if a key of the map names a distortion other than zero, and is neither the entry
-/// `read` nor one of `others` (separated by blanks): the lens would be read as one without it.
+/// Throws InputError if a key of the map names a distortion other than zero, and is neither the
+/// entry `read` nor one of `others` (separated by blanks): the lens would be read as one without
+/// it.
 void check_distortion_is_read(const YamlEntry& map,
                               const std::optional<YamlEntry>& read,
                               const std::string& others = "");

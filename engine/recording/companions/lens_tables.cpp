@@ -1,12 +1,13 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-// Lens files without keys: COLMAP's cameras and ETH3D's four numbers.
+// Lens files without keys: COLMAP's cameras, ETH3D's four numbers and the text of ROS.
 #include "engine/files/byte_cursor.h"
 #include "engine/files/refuse.h"
 #include "engine/files/text_file.h"
 #include "engine/recording/companions/lens_formats.h"
 
 #include <algorithm>
+#include <map>
 
 namespace gpo {
 namespace {
@@ -169,9 +170,56 @@ Calibration read_four_numbers(const fs::path& file, std::string_view bytes) {
   return result;
 }
 
+constexpr const char* kRosMatrix = "camera matrix";
+
+/// The text (ost.txt, *.ini) of ROS' camera_calibration: numbers below headings without a colon.
+bool is_ros_text(const fs::path& /*file*/, std::string_view bytes) {
+  const auto lines = data_lines(bytes.substr(0, limits().hand_bytes));
+  return std::ranges::count(lines, kRosMatrix) > 0;
+}
+
+Calibration read_ros_text(const fs::path& file, std::string_view bytes) {
+  std::map<std::string, std::vector<double>> below_heading;
+  std::string heading;
+  int cameras = 0;
+  for (const std::string_view line : data_lines(bytes)) {
+    const auto values = numbers_in(line);
+    if (values.empty()) {
+      heading = line;
+      cameras += heading == kRosMatrix;
+    }
+    auto& all = below_heading[heading];
+    all.insert(all.end(), values.begin(), values.end());
+  }
+  if (cameras > 1) fail_at(file, fmt::format("{} cameras", cameras), kOneCamera);
+  const auto values_of = [&](const char* name) {
+    return std::pair(YamlEntry{file, name, YAML::Node()}, below_heading[name]);
+  };
+  Calibration result;
+  Camera& camera = result.camera;
+  const auto [width_place, width] = values_of("width");
+  const auto [height_place, height] = values_of("height");
+  if (width.size() != 1) yaml_fail(width_place, counted(width.size(), "number"), "1");
+  if (height.size() != 1) yaml_fail(height_place, counted(height.size(), "number"), "1");
+  set_resolution(camera, width_place, width[0], height[0]);
+  const auto [matrix_place, k] = values_of(kRosMatrix);
+  if (k.size() != 9) yaml_fail(matrix_place, counted(k.size(), "number"), "9 (a 3x3 matrix)");
+  set_intrinsics(camera, matrix_place, {k[0], k[4], k[2], k[5]});
+  const auto [place, coefficients] = values_of("distortion");
+  // The fisheye lens has 4, and the file does not name the model.
+  if (coefficients.size() != 5 && coefficients.size() != 8)
+    yaml_fail(place,
+              counted(coefficients.size(), "number"),
+              "5 or 8 of a lens that is no fisheye. Use the YAML file of the calibration");
+  camera.distortion = Distortion::radial_tangential;
+  set_coefficients(camera, place, coefficients);
+  return result;
+}
+
 constexpr auto kTables = std::to_array<LensTable>({{"COLMAP", is_colmap_binary, read_colmap_binary},
                                                    {"COLMAP", is_colmap_text, read_colmap_text},
-                                                   {"ETH3D", is_four_numbers, read_four_numbers}});
+                                                   {"ETH3D", is_four_numbers, read_four_numbers},
+                                                   {"ROS", is_ros_text, read_ros_text}});
 
 }  // namespace
 

@@ -220,7 +220,8 @@ void add_data_set_truth(Recording& recording, const fs::path& folder) {
       recording.truth = GroundTruth{fmt::format("{} ({})", file->filename().string(), set.name),
                                     set.read(*file, recording.image_files)};
       const auto& poses = recording.truth->poses;
-      if (const auto without = std::ranges::count_if(poses, [](const auto& pose) { return !pose; }); without > 0)
+      if (const auto without = std::ranges::count_if(poses, [](const auto& pose) { return !pose; });
+          without > 0)
         recording.notes.push_back(
             fmt::format("{} of {} images have no pose in the ground truth", without, poses.size()));
       recording.truth->jumps = jumps_of(recording.timestamps_ns, poses);
