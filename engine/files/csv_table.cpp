@@ -74,6 +74,13 @@ void check_header(const CsvTable& table, int line, const std::vector<std::string
                fmt::format("{} (columns {})", in_quotes(names[i]), joined(names)));
 }
 
+/// Names the separator if a row with too few columns seems to have another one.
+std::string separator_text(const CsvRow& row, Separator separator) {
+  const bool commas = separator == Separator::comma;
+  if (row.text.find_first_of(commas ? ";\t " : ",;") == std::string_view::npos) return "";
+  return commas ? " separated by commas" : " separated by blanks";
+}
+
 void check_count(const CsvTable& table,
                  const CsvRow& row,
                  const std::vector<std::string>& names,
@@ -87,9 +94,10 @@ void check_count(const CsvTable& table,
   csv_fail(table,
            row.line,
            counted(count, "column") + (truncated ? " (the file seems truncated)" : ""),
-           fmt::format("{}{} ({})",
+           fmt::format("{}{}{} ({})",
                        columns == CsvColumns::at_least && !enough ? "at least " : "",
                        enough ? first : named,
+                       enough ? "" : separator_text(row, table.separator),
                        joined(names)));
 }
 

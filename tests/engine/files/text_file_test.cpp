@@ -151,6 +151,9 @@ TEST(CsvTable, ErrorsNameFileAndLineAlsoOfANonAscendingTime) {
            {"1,2,3,4\n2,2,3,4,5\n", ":2: found 5 columns, expected 4 " + kColumns},
            {"1,2,3,4\n2,2,3",
             ":2: found 3 columns (the file seems truncated), expected 4 " + kColumns},
+           {"timestamp;wx;wy;wz\n1;2;3;4\n",
+            ":2: found 1 column, expected 4 separated by commas " + kColumns},
+           {"1 2 3 4\n2 2 3 4\n", ":2: found 1 column, expected 4 separated by commas " + kColumns},
            {"timestamp,wx,wz,wy\n1,2,3,4\n",
             ":1: found column 3 named \"wz\", expected \"wy\" (columns timestamp,wx,wy,wz)"},
            {"#timestamp,ax,ay,az\n1,2,3,4\n",
@@ -162,6 +165,22 @@ TEST(CsvTable, ErrorsNameFileAndLineAlsoOfANonAscendingTime) {
            {"1,2,3,4\n2,3,,4\n", ":2: found \"\", expected a finite number"},
            {"1,2,3,4\nnan,3,3,4\n", ":2: found \"nan\", expected a time stamp"}})
     EXPECT_EQ(error(content), (folder.path() / "gyro.csv").string() + message);
+}
+
+TEST(CsvTable, NamesTheBlanksThatSeparateColumns) {
+  const TestFolder folder;
+  const auto error = [&](const std::string& content) {
+    const auto file = folder.write("truth.txt", content);
+    return error_of([&] {
+      read_csv(file, {"timestamp", "tx"}, CsvColumns::exactly, Separator::blanks);
+    });
+  };
+  for (const char* content : {"1,2\n2,2\n", "1;2\n2;2\n"})
+    EXPECT_THAT(error(content),
+                EndsWith("truth.txt:2: found 1 column, expected 2 separated by blanks "
+                         "(timestamp,tx)"));
+  EXPECT_THAT(error("1\n"), EndsWith("found 1 column, expected 2 (timestamp,tx)"));
+  EXPECT_THAT(error("1 2 3\n"), EndsWith("found 3 columns, expected 2 (timestamp,tx)"));
 }
 
 std::string error_at(const fs::path& file) {
