@@ -9,7 +9,7 @@
 namespace gpo::test {
 namespace {
 
-using testing::ElementsAre, testing::HasSubstr, testing::IsEmpty, testing::Pointwise;
+using testing::ElementsAre, testing::HasSubstr, testing::Pointwise;
 
 using Numbers = std::vector<double>;
 
@@ -347,120 +347,6 @@ TEST(LensFormats, RefuseADistortionUnderAnUnknownKey) {
         << lens_files()[program].name;
   EXPECT_EQ(error(opencv + "distCoef5: [0, 0.0, 0]\nmin_dist: 30\ndistance: 2\nD: []\n"),
             "no error");
-}
-
-class CalibrationBesideImages : public RecordingFolder {
- protected:
-  CalibrationBesideImages() {
-    for (int i = 0; i < 3; ++i)
-      folder.write("img" + std::to_string(i) + ".png", cv::Mat(480, 752, CV_8UC1, cv::Scalar(i)));
-  }
-};
-
-TEST_F(CalibrationBesideImages, IsFoundByItsKeys) {
-  folder.write("anything.yaml", lens_files()[10].text);
-  const auto recording = open();
-  EXPECT_EQ(recording->camera_source, CameraSource::file);
-  EXPECT_EQ(recording->camera.fx, 458.654);
-  EXPECT_EQ(recording->files.front().use, "calibration (ORB-SLAM)");
-}
-
-TEST_F(CalibrationBesideImages, MayHaveAnEndingInUpperCase) {
-  for (const char* name : {"Camera.YAML", "CALIB.YML", "desk-CAMCHAIN.Yaml", "settings.YAML"}) {
-    const auto file = folder.write(name, lens_files()[5].text);
-    EXPECT_EQ(find_calibration(folder.path()), file);
-    EXPECT_EQ(open()->camera_source, CameraSource::file) << name;
-    std::filesystem::remove(file);
-  }
-  folder.write("a.yaml", lens_files()[10].text);
-  const auto usual = folder.write("Camera.YAML", lens_files()[5].text);
-  EXPECT_EQ(find_calibration(folder.path()), usual);
-}
-
-/// The configuration has the extrinsics and the time offset, whatever the files' names.
-TEST_F(CalibrationBesideImages, IsVinsFusionsConfigurationAndNotTheCameraItNames) {
-  const std::string config =
-      "%YAML:1.0\nimage_width: 752\nbody_T_cam0: !!opencv-matrix\n   rows: 4\n   cols: 4\n"
-      "   dt: d\n   data: " +
-      kMatrix4 + "\ntd: -0.002\ncam0_calib: ";
-  for (const char* camera : {"cam0_pinhole.yaml", "zcam0_pinhole.yaml", "camera.yaml"}) {
-    const auto lens = folder.write(camera, lens_files()[1].text);
-    const auto file = folder.write("euroc_mono_imu_config.yaml", config + camera + "\n");
-    const auto recording = open();
-    EXPECT_EQ(find_calibration(folder.path()), file) << camera;
-    ASSERT_TRUE(recording->T_body_camera) << camera;
-    EXPECT_GT(recording->T_body_camera->R_wc(1, 0), 0.99);
-    EXPECT_THAT(
-        recording->files,
-        testing::Contains(testing::Field(&FoundFile::use, "camera of euroc_mono_imu_config.yaml")))
-        << camera;
-    EXPECT_THAT(recording->notes, testing::Not(testing::Contains(HasSubstr("not read")))) << camera;
-    std::filesystem::remove(lens);
-  }
-}
-
-TEST_F(CalibrationBesideImages, IsNamedWithTheReasonIfItIsNotRead) {
-  std::string broken = lens_files()[10].text;
-  broken.replace(broken.find("Camera1.fy"), 10, "Camera1.fz");
-  folder.write("settings.yaml", broken);
-  folder.write("calib.npz", "binary");
-  const auto recording = open();
-  EXPECT_EQ(recording->camera_source, CameraSource::guess);
-  EXPECT_THAT(
-      recording->notes,
-      testing::IsSupersetOf(
-          {"settings.yaml looks like a calibration and is not read: key `Camera1.fy`: found "
-           "no value, expected a number",
-           "calib.npz looks like a calibration and is not read: not a format that is "
-           "read"}));
-}
-
-/// The text that ROS' camera_calibration writes.
-std::string ros_text(const std::string& coefficients) {
-  return "# oST version 5.0 parameters\n\n\n[image]\n\nwidth\n752\n\nheight\n480\n\n"
-         "[narrow_stereo]\n\ncamera matrix\n458.654000 0.000000 367.215000\n"
-         "0.000000 457.296000 248.375000\n0.000000 0.000000 1.000000\n\ndistortion\n" +
-         coefficients +
-         "\n\nrectification\n1.000000 0.000000 0.000000\n0.000000 1.000000 0.000000\n"
-         "0.000000 0.000000 1.000000\n\nprojection\n450.1 0.0 366.0 0.0\n0.0 450.2 248.0 0.0\n"
-         "0.000000 0.000000 1.000000 0.000000\n\n";
-}
-
-TEST_F(CalibrationBesideImages, IsRosTextOfAnyName) {
-  const std::string text = ros_text("-0.28 0.07 0.0002 0.00002 0.0");
-  const Calibration named = read_calibration(folder.write("camera.ini", text));
-  EXPECT_EQ(named.format, "ROS");
-  std::filesystem::rename(folder.path() / "camera.ini", folder.path() / "ost.txt");
-  const auto recording = open();
-  EXPECT_EQ(recording->camera, named.camera);
-  EXPECT_EQ(recording->camera.fy, 457.296);
-  EXPECT_EQ(recording->camera.cx, 367.215);
-  EXPECT_EQ(recording->camera_source, CameraSource::file);
-  EXPECT_EQ(recording->camera.width, 752);
-  EXPECT_THAT(recording->camera.coefficients, ElementsAre(-0.28, 0.07, 0.0002, 0.00002, 0));
-  folder.write("ost.txt", ros_text("0.1 0.2 0.3 0.4"));
-  EXPECT_THAT(open()->notes,
-              testing::Contains("ost.txt looks like a calibration and is not read: key "
-                                "`distortion`: found 4 numbers, expected 5 or 8 of a lens that is "
-                                "no fisheye. Use the YAML file of the calibration"));
-  folder.write("ost.txt", ros_text("0.1 0 0 0 0") + ros_text("0.1 0 0 0 0"));
-  EXPECT_THAT(open()->notes, testing::Contains(HasSubstr("found 2 cameras, expected one camera")));
-}
-
-TEST_F(CalibrationBesideImages, IsNamedIfATextHasItsWords) {
-  folder.write("setup.txt", "Focal length in pixels 500\n");
-  EXPECT_THAT(open()->notes,
-              testing::Contains(HasSubstr("setup.txt looks like a calibration and is not read")));
-}
-
-TEST_F(CalibrationBesideImages, IgnoresOtherFiles) {
-  folder.write("readme.txt", "The focal length is in camera.yaml.\n");
-  folder.write("notes.yaml", "author: me\n");
-  folder.write("list.txt", "1 2 3\n");
-  folder.write("plane.yaml", "normal: [0, 0, 1]\ndistance: 1\n");
-  const auto recording = open();
-  EXPECT_EQ(recording->camera_source, CameraSource::guess);
-  EXPECT_THAT(recording->files, IsEmpty());
 }
 
 }  // namespace
