@@ -65,13 +65,22 @@ bool same_name(const std::string& header, const std::string& expected) {
   return first.find(name[0]) != std::string::npos && name.back() == expected.back();
 }
 
+/// Names the separator if a cell ends with another one: "0.1, 2, 3".
+std::string separator_text(const CsvTable& table, std::string_view cell) {
+  const bool other = cell.ends_with(',') || cell.ends_with(';');
+  return other && table.separator == Separator::blanks ? ", separated by blanks" : "";
+}
+
 void check_header(const CsvTable& table, int line, const std::vector<std::string>& names) {
   for (std::size_t i = 0; i < names.size() && i < table.header.size(); ++i)
     if (!same_name(table.header[i], names[i]))
       csv_fail(table,
                line,
                fmt::format("column {} named {}", i + 1, in_quotes(table.header[i])),
-               fmt::format("{} (columns {})", in_quotes(names[i]), joined(names)));
+               fmt::format("{} (columns {}{})",
+                           in_quotes(names[i]),
+                           joined(names),
+                           separator_text(table, table.header[i])));
 }
 
 /// Names the separator if a row with too few columns seems to have another one.
@@ -234,7 +243,8 @@ std::string_view csv_cell(const CsvTable& table, const CsvRow& row, int column) 
 double csv_number(const CsvTable& table, const CsvRow& row, int column) {
   const std::string_view cell = csv_cell(table, row, column);
   const auto value = parse_number(cell);
-  if (!value) csv_fail(table, row.line, in_quotes(cell), "a finite number");
+  if (!value)
+    csv_fail(table, row.line, in_quotes(cell), "a finite number" + separator_text(table, cell));
   return *value;
 }
 
@@ -253,7 +263,8 @@ std::vector<std::int64_t> csv_time_stamps(const CsvTable& table, TimeUnit otherw
   for (const auto& row : table.rows) {
     const std::string_view cell = csv_cell(table, row, 0);
     const auto time = parse_decimal(cell, decimals);
-    if (!time) csv_fail(table, row.line, in_quotes(cell), "a time stamp");
+    if (!time)
+      csv_fail(table, row.line, in_quotes(cell), "a time stamp" + separator_text(table, cell));
     if (!times.empty() && *time <= times.back())
       csv_fail(table,
                row.line,

@@ -172,13 +172,19 @@ TEST(CsvTable, NamesTheBlanksThatSeparateColumns) {
   const auto error = [&](const std::string& content) {
     const auto file = folder.write("truth.txt", content);
     return error_of([&] {
-      read_csv(file, {"timestamp", "tx"}, CsvColumns::exactly, Separator::blanks);
+      csv_time_stamps(read_csv(file, {"timestamp", "tx"}, CsvColumns::exactly, Separator::blanks),
+                      TimeUnit::seconds);
     });
   };
   for (const char* content : {"1,2\n2,2\n", "1;2\n2;2\n"})
     EXPECT_THAT(error(content),
                 EndsWith("truth.txt:2: found 1 column, expected 2 separated by blanks "
                          "(timestamp,tx)"));
+  EXPECT_THAT(error("1, 2\n2, 2\n"),
+              EndsWith("truth.txt:1: found column 1 named \"1,\", expected \"timestamp\" (columns "
+                       "timestamp,tx, separated by blanks)"));
+  EXPECT_THAT(error("timestamp, tx\n2, 2\n"),
+              EndsWith("truth.txt:2: found \"2,\", expected a time stamp, separated by blanks"));
   EXPECT_THAT(error("1\n"), EndsWith("found 1 column, expected 2 (timestamp,tx)"));
   EXPECT_THAT(error("1 2 3\n"), EndsWith("found 3 columns, expected 2 (timestamp,tx)"));
 }
