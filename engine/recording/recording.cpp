@@ -132,6 +132,8 @@ using Ending = std::string_view;
 constexpr std::array<Ending, 10> kImages = {
     "png", "jpg", "jpeg", "bmp", "pgm", "ppm", "tif", "tiff", "webp", "pnm"};
 constexpr std::array<Ending, 7> kVideos = {"mp4", "mov", "m4v", "3gp", "mkv", "webm", "avi"};
+/// Other programs use these endings for other files, so that only the content counts.
+constexpr std::array<Ending, 3> kVideosByContent = {"ts", "m2ts", "mpg"};
 constexpr std::array<Ending, 3> kBags = {"bag", "db3", "mcap"};
 
 bool ends_in(const fs::path& file, std::span<const Ending> endings) {
@@ -180,7 +182,10 @@ bool is_video_name(const fs::path& file) { return ends_in(file, kVideos); }
 bool is_bag_name(const fs::path& file) { return ends_in(file, kBags); }
 
 std::string recording_endings() {
-  return fmt::format("{}, {}", fmt::join(kVideos, ", "), fmt::join(kBags, ", "));
+  return fmt::format("{}, {}, {}",
+                     fmt::join(kVideos, ", "),
+                     fmt::join(kVideosByContent, ", "),
+                     fmt::join(kBags, ", "));
 }
 
 bool is_yaml_name(const fs::path& file) {

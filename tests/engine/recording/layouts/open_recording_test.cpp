@@ -49,7 +49,9 @@ TEST(FileKinds, AreRecognizedByEndingsInAnyCase) {
   EXPECT_TRUE(is_image_name("1.TIFF"));
   for (const char* other : {"", "mp4", ".mp4", "clip.mp", "clip.mp4.txt"})
     EXPECT_FALSE(is_video_name(other)) << other;
-  EXPECT_EQ(recording_endings(), "mp4, mov, m4v, 3gp, mkv, webm, avi, bag, db3, mcap");
+  EXPECT_EQ(recording_endings(),
+            "mp4, mov, m4v, 3gp, mkv, webm, avi, ts, m2ts, mpg, bag, db3, mcap");
+  EXPECT_FALSE(is_video_name("program.ts"));  // TypeScript, unless its content is a video
   EXPECT_TRUE(is_yaml_name("desk.yml"));
   EXPECT_FALSE(is_recipe("no such file.yaml"));
 }
