@@ -38,6 +38,11 @@ bool fits(const BagTopic& topic, const RoleKind& kind) {
   return topic.messages > 0 && topic.encoding != MessageEncoding::unknown && kind.fits(topic.type);
 }
 
+/// Returns the notes of a bag, such as that it is truncated, for the end of a message.
+std::string notes_text(const Bag& bag) {
+  return bag.notes.empty() ? "" : fmt::format("; {}", fmt::join(bag.notes, "; "));
+}
+
 int chosen(const Bag& bag, const RoleKind& kind, const std::string& name) {
   for (std::size_t i = 0; i < bag.topics.size(); ++i)
     if (bag.topics[i].name == name && fits(bag.topics[i], kind)) return static_cast<int>(i);
@@ -46,7 +51,7 @@ int chosen(const Bag& bag, const RoleKind& kind, const std::string& name) {
       same_name == bag.topics.end()
           ? fmt::format("no topic {} among {}", name, topics_text(bag))
           : fmt::format("{} messages of {} in {}", same_name->messages, same_name->type, name);
-  refuse(bag.file, "--topic: found {}, expected {}", found, kind.expected);
+  refuse(bag.file, "--topic: found {}, expected {}{}", found, kind.expected, notes_text(bag));
 }
 
 std::vector<int> fitting(const Bag& bag, const RoleKind& kind) {
@@ -195,9 +200,10 @@ TopicRoles topic_roles(const Bag& bag, const TopicChoices& choices) {
   const auto images = made.roles.of(TopicRole::image);
   if (!images)
     refuse(bag.file,
-           "found no images among {}, expected a topic of type {}",
+           "found no images among {}, expected a topic of type {}{}",
            topics_text(bag),
-           kRoles[0].expected);
+           kRoles[0].expected,
+           notes_text(bag));
   made.like = bag.topics[*images].name;
   made.add_calibration();
   made.add(TopicRole::truth);

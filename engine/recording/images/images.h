@@ -85,13 +85,14 @@ struct VideoIndex {
   std::vector<std::int64_t> times;      ///< all frames, strictly ascending
   std::vector<std::int64_t> key_times;  ///< frames at which decoding can begin
   double unit_s = 0;
-  cv::Size size;              ///< [px] as shown, that is after the container's rotation
-  double declared_count = 0;  ///< frames according to the container; 0 if unknown
-  int hidden_count = 0;       ///< frames that players do not show: trimmed, or without references
-  double rate_hz = 0;         ///< average according to the container; 0 if unknown
-  int quarter_turns = 0;      ///< clockwise rotation from the stored to the shown image
-  bool mirrored = false;      ///< whether players also mirror the image; the decoder does not
-  bool complete = true;       ///< false: `times` are only the first ones
+  cv::Size size;                 ///< [px] as shown, that is after the container's rotation
+  double declared_count = 0;     ///< frames according to the container; 0 if unknown
+  bool estimated_count = false;  ///< whether `declared_count` is the duration times the rate
+  int hidden_count = 0;   ///< frames that players do not show: trimmed, or without references
+  double rate_hz = 0;     ///< average according to the container; 0 if unknown
+  int quarter_turns = 0;  ///< clockwise rotation from the stored to the shown image
+  bool mirrored = false;  ///< whether players also mirror the image; the decoder does not
+  bool complete = true;   ///< false: `times` are only the first ones
 };
 
 /// Decodes frames of a video file in any order, with the same result as decoding the whole file

@@ -147,6 +147,7 @@ VideoDecoder::VideoDecoder(fs::path file, const ReadProgress& progress, int firs
   const double rate = av_q2d(stream.avg_frame_rate);
   if (std::isfinite(rate)) index_.rate_hz = rate;
   index_.declared_count = declared_count(*input_->format, stream);
+  index_.estimated_count = stream.nb_frames <= 0;
   if (!index_packets(progress, first_frames)) count_frames(progress);
   restart();
 }
@@ -315,8 +316,9 @@ VideoFile open_video(const fs::path& file,
   const VideoIndex& index = decoder->index();
   if (index.times.empty() || (index.complete && is_truncated(file, index)))
     refuse(file,
-           "found {} frames (the file seems truncated), expected {}",
+           "found {} frames (the file seems truncated), expected {}{}",
            index.times.size(),
+           index.estimated_count ? "about " : "",
            std::max(1L, std::lround(index.declared_count)));
   check_size(file, index.size, camera);
   if (index.quarter_turns != 0 && !camera.readout_direction)

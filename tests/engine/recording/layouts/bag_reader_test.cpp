@@ -176,6 +176,20 @@ TEST_F(BagReader, PrefersACameraYamlBesideTheBag) {
   EXPECT_THAT(recording->notes, Contains("using camera.yaml instead of /cam0/camera_info"));
 }
 
+TEST_F(BagReader, NamesTheTruncationOfABagWithoutImages) {
+  write_small_bag(folder.path() / "whole.mcap", mcap_writer);
+  const std::string bytes = folder.read("whole.mcap");
+  for (const std::size_t size : {std::size_t{8}, bytes.size() / 3}) {
+    const auto head = folder.write("head.mcap", bytes.substr(0, size));
+    EXPECT_THAT(error_of([&] { open_recording(head); }),
+                testing::ContainsRegex(
+                    "found no images among .*; the bag is truncated or broken in the record at "
+                    "byte [0-9]+ of [0-9]+: later messages are ignored"));
+    EXPECT_THAT(error_with(head, TopicRole::image, "/cam0/image_raw"),
+                HasSubstr("; the bag is truncated or broken"));
+  }
+}
+
 TEST_F(BagReader, OpensAFolderWithOneBag) {
   small_bag();
   EXPECT_EQ(open()->frame_count(), 20);
