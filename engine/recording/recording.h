@@ -50,8 +50,9 @@ struct Board {
 /// A file of a recording, or the first file of a sequence, and what became of it.
 struct FoundFile {
   fs::path file;
-  std::string use;     ///< "calibration (Kalibr)"; empty: not read
-  std::string reason;  ///< why it was not read, or details
+  std::string use;                  ///< "calibration (Kalibr)"; empty: not read
+  std::string reason;               ///< why it was not read, or details
+  std::vector<fs::path> members{};  ///< all files of the sequence that `file` begins
 };
 
 /// A recording, immutable once opened. Threads share it by shared_ptr<const>.

@@ -61,14 +61,14 @@ void add_ignored(std::vector<FoundFile>& files,
                  const std::vector<fs::path>& images,
                  const fs::path& folder) {
   std::vector<FoundFile> ignored;
-  const std::set<fs::path> of_images(images.begin(), images.end());
+  std::set<fs::path> known(images.begin(), images.end());
+  for (const FoundFile& one : files) known.insert(one.members.begin(), one.members.end());
   auto all = files_in(folder);
   std::ranges::sort(all);
   for (const fs::path& file : all) {
-    const bool reported =
-        of_images.contains(file) || std::ranges::any_of(files, [&](const auto& one) {
-          return one.file == file || is_numbered_like(one.file, file);
-        });
+    const bool reported = known.contains(file) || std::ranges::any_of(files, [&](const auto& one) {
+                            return one.file == file || is_numbered_like(one.file, file);
+                          });
     if (!reported) ignored.push_back({file, "", "not a file that this layout reads"});
   }
   const std::size_t more = ignored.size() - std::min(ignored.size(), kMostIgnored);

@@ -255,6 +255,10 @@ cv::Mat to_8_bits(const cv::Mat& image, int sampled_bits) {
   return reduced;
 }
 
+bool has_number(const fs::path& file) {
+  return file.stem().string().find_first_of("0123456789") != std::string::npos;
+}
+
 bool natural_less(const std::string& a, const std::string& b) {
   std::size_t i = 0, j = 0;
   const auto digits_at = [](const std::string& text, std::size_t from) {
@@ -360,11 +364,26 @@ void add_image_files(Recording& recording,
 
 std::vector<fs::path> numbered_images(const fs::path& folder) {
   std::vector<fs::path> files = files_of_kind(folder, FileKind::image);
-  std::erase_if(files, [](const fs::path& file) {
-    return file.stem().string().find_first_of("0123456789") == std::string::npos;
-  });
+  std::erase_if(files, std::not_fn(has_number));
   std::ranges::sort(files, natural_less, [](const auto& file) { return file.filename().string(); });
   return files;
+}
+
+std::vector<FoundFile> unreadable_images(const fs::path& folder) {
+  std::vector<FoundFile> found;
+  std::error_code error, none;
+  fs::directory_iterator entry(folder, error);
+  for (; !error && entry != fs::directory_iterator(); entry.increment(error)) {
+    const fs::path& file = entry->path();
+    if (!is_image_name(file) || !has_number(file) || entry->is_regular_file(none)) continue;
+    const char* reason = entry->is_directory(none)                         ? "a folder"
+                         : entry->is_symlink(none) && !entry->exists(none) ? "a broken link"
+                                                                           : "not a file";
+    found.push_back({file, "", reason});
+  }
+  std::ranges::sort(
+      found, natural_less, [](const auto& one) { return one.file.filename().string(); });
+  return found;
 }
 
 }  // namespace gpo

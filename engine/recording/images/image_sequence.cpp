@@ -11,8 +11,9 @@
 #include <cctype>
 #include <cmath>
 #include <numeric>
+#include <set>
 
-#include <fmt/format.h>
+#include <fmt/ranges.h>
 
 namespace gpo {
 namespace {
@@ -73,8 +74,19 @@ const char* reason_of(Rank rank) {
 }
 
 FoundFile other_sequence(const std::vector<fs::path>& files, Rank rank) {
-  return {
-      files.front(), "", fmt::format("{}: {}", counted(files.size(), "image"), reason_of(rank))};
+  return {files.front(),
+          "",
+          fmt::format("{}: {}", counted(files.size(), "image"), reason_of(rank)),
+          files};
+}
+
+/// Returns the unreadable images whose names have the rank of those that are read.
+std::vector<FoundFile> unreadable_among(const std::vector<fs::path>& read, const fs::path& folder) {
+  if (read.empty()) return {};
+  std::vector<FoundFile> found = unreadable_images(folder);
+  const Rank rank = rank_of(parts_of(read.front()).words);
+  std::erase_if(found, [&](const auto& one) { return rank_of(parts_of(one.file).words) != rank; });
+  return found;
 }
 
 /// Splits by the text around the numbers; sequences with the same numbers are different ones.
@@ -108,6 +120,7 @@ ImageSequence sequence_in(const fs::path& folder) {
     found.files = numbered_images(folder);  // in the order of the numbers
     std::erase_if(found.files, [&](const fs::path& file) { return !kept.contains(file); });
   }
+  found.unreadable = unreadable_among(found.files, folder);
   return found;
 }
 
@@ -220,10 +233,12 @@ ImageSequence find_image_sequence(const fs::path& folder) {
   for (const std::string& name : usual_subfolders(folder)) {
     if (!is_folder(folder / name)) continue;
     ImageSequence inner = sequence_in(folder / name);
-    if (found.files.empty())
+    if (found.files.empty()) {
       found.files = inner.files;
-    else if (!inner.files.empty())
+      found.unreadable = inner.unreadable;
+    } else if (!inner.files.empty()) {
       found.others.push_back(other_sequence(inner.files, Rank::second));
+    }
     found.others.insert(found.others.end(), inner.others.begin(), inner.others.end());
   }
   if (found.files.empty()) return found;
@@ -234,6 +249,19 @@ ImageSequence find_image_sequence(const fs::path& folder) {
       found.others.push_back(other_sequence(files, rank_of(parts_of(folder / name).words)));
   }
   return found;
+}
+
+void report_unreadable(Recording& recording, const std::vector<FoundFile>& unreadable) {
+  constexpr std::size_t kShown = 3;
+  if (unreadable.empty()) return;
+  std::vector<std::string> texts;
+  for (std::size_t i = 0; i < std::min(kShown, unreadable.size()); ++i)
+    texts.push_back(
+        fmt::format("{} ({})", unreadable[i].file.filename().string(), unreadable[i].reason));
+  if (unreadable.size() > kShown)
+    texts.push_back(fmt::format("{} more names of images", unreadable.size() - kShown));
+  recording.notes.push_back(fmt::format("not read: {}", fmt::join(texts, ", ")));
+  recording.files.insert(recording.files.end(), unreadable.begin(), unreadable.end());
 }
 
 std::optional<TimesInNames> times_in_names(std::vector<fs::path>& files) {

@@ -10,11 +10,16 @@ namespace gpo {
 struct ImageSequence {
   std::vector<fs::path> files;    ///< in the order of their numbers; empty: none
   std::vector<FoundFile> others;  ///< the first image of each sequence that is not read
+  std::vector<FoundFile>
+      unreadable;  ///< names of images that are no files, see `unreadable_images`
 };
 
 /// Finds the color or gray images in a folder or in its usual subfolders. Never returns depth,
 /// masks and the like, which their names tell.
 ImageSequence find_image_sequence(const fs::path& folder);
+
+/// Adds images that cannot be read to the recording's files, and one note that names them.
+void report_unreadable(Recording& recording, const std::vector<FoundFile>& unreadable);
 
 /// Times that all file names contain, and their unit for people.
 struct TimesInNames {

@@ -79,6 +79,9 @@ void add_image_files(Recording& recording,
 
 /// Returns the numbered images of a folder in the order of their numbers: 2.png before 10.png.
 std::vector<fs::path> numbered_images(const fs::path& folder);
+/// Returns what has the name of a numbered image but is no file, such as a broken link, with the
+/// reason.
+std::vector<FoundFile> unreadable_images(const fs::path& folder);
 
 /// Times of a video's frames, in units of `unit_s` and ascending.
 struct VideoIndex {

@@ -3,6 +3,7 @@
 #include "engine/files/refuse.h"
 #include "engine/files/text_file.h"
 #include "engine/recording/companions/companion_files.h"
+#include "engine/recording/images/image_sequence.h"
 #include "engine/recording/images/images.h"
 #include "engine/recording/layouts/open_recording.h"
 
@@ -14,6 +15,7 @@ namespace {
 struct ImageList {
   std::vector<std::int64_t> timestamps_ns;
   std::vector<fs::path> files;
+  std::vector<FoundFile> unreadable;
   std::optional<CsvTable> table;
 };
 
@@ -29,6 +31,7 @@ ImageList listed_images(CsvTable table, TimeUnit unit, const fs::path& folder) {
 ImageList named_images(const fs::path& cam) {
   ImageList list;
   list.files = numbered_images(cam / "data");
+  list.unreadable = unreadable_images(cam / "data");
   for (const auto& file : list.files) {
     const auto time = parse_integer(file.stem().string());
     if (!time || (!list.timestamps_ns.empty() && *time <= list.timestamps_ns.back()))
@@ -51,6 +54,7 @@ ImageList read_image_list(const fs::path& folder) {
 
 void add_images(Recording& recording, ImageList list, const OpenOptions& options) {
   recording.timestamps_ns = std::move(list.timestamps_ns);
+  report_unreadable(recording, list.unreadable);
   const auto missing = std::ranges::find_if_not(list.files, is_file);
   if (missing == list.files.end()) {
     add_image_files(recording, list.files, options.cache_bytes);

@@ -216,6 +216,7 @@ Recording read_images(const fs::path& path, const OpenOptions& options) {
       calibration_of(folder, sequence, log, tracks.has_value());
   report_calibration(recording, search, calibration);
   recording.files.insert(recording.files.end(), sequence.others.begin(), sequence.others.end());
+  report_unreadable(recording, sequence.unreadable);
   const std::string name = calibration_file.filename().string();
   recording.camera = calibration.camera;
   recording.T_body_camera = calibration.T_body_camera;
