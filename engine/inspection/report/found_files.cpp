@@ -4,6 +4,7 @@
 #include "engine/inspection/report/report.h"
 
 #include <algorithm>
+#include <set>
 
 #include <fmt/format.h>
 
