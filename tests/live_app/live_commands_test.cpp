@@ -52,6 +52,7 @@ TEST(Record, GivesABagAFolderOfItsOwnBesideABagOfAnotherCamera) {
   const fs::path folder = fresh_folder();
   make_video(folder / "small.avi", moving_images(12, kSmall));
   make_video(folder / "large.avi", moving_images(12, kSmall * 2));
+  fs::create_directory(folder / "out");
   succeeding("record {} --output {}", folder / "small.avi", folder / "out" / "a.mcap");
   const Outcome outcome =
       succeeding("record {} --output {}", folder / "large.avi", folder / "out" / "b.mcap");

@@ -14,7 +14,9 @@ namespace gpo {
 
 RecordingFormat recording_format_of(const fs::path& output) {
   static const std::vector<std::string> kOtherFiles = split(
-      ".db3 .zip .tar .gz .tgz .7z .mp4 .mov .mkv .webm .avi .png .jpg .csv .txt .json .yaml", ' ');
+      ".db3 .zip .tar .gz .tgz .7z .mp4 .m4v .3gp .ts .mov .mkv .webm .avi .png .jpg .csv .txt "
+      ".json .yaml",
+      ' ');
   const bool folder = !output.has_filename();  // a slash at the end
   const fs::path named = folder ? output.parent_path() : output;
   const std::string ending = lower_case(named.extension().string());
