@@ -18,10 +18,26 @@ constexpr double kMostSigmaDeg = 15;  // for a tilt that gives a name
 constexpr double kLevelDeg = 5;       // floors and furniture are not more level than that
 constexpr double kSameHeight = 0.95;  // share of the floor's depth: a carpet, not a table
 
-/// nullopt if the method gives none for this plane: that of the main plane would be too small.
-std::optional<double> normal_sigma_deg(const PlaneEstimate& plane) {
-  if (!plane.normal_covariance) return std::nullopt;
-  return degrees(std::sqrt(plane.normal_covariance->trace()));
+/// A direction and its covariance [rad^2], rank 2.
+struct Direction {
+  Eigen::Vector3d unit;
+  Eigen::Matrix3d covariance;
+
+  /// Variance of the angle to another direction [rad^2].
+  double variance_towards(const Eigen::Vector3d& other) const {
+    const Eigen::Vector3d arc = (other - unit.dot(other) * unit).normalized();
+    return arc.dot(covariance * arc);
+  }
+};
+
+/// Returns one standard deviation of the angle between two directions [deg]: that along the arc
+/// between them. Of parallel ones, any change opens the angle.
+double angle_sigma_deg(const Direction& a, const Direction& b) {
+  const double any = std::sqrt(a.covariance.trace() + b.covariance.trace());
+  constexpr double kParallel = 2;  // standard deviations
+  if (a.unit.cross(b.unit).norm() <= std::sin(std::min(kParallel * any, radians(90))))
+    return degrees(any);
+  return degrees(std::sqrt(a.variance_towards(b.unit) + b.variance_towards(a.unit)));
 }
 
 std::vector<PlaneEstimate> found_planes(const Inspection& inspection) {
@@ -34,9 +50,11 @@ std::vector<PlaneEstimate> found_planes(const Inspection& inspection) {
 
 PlaneName named(const PlaneEstimate& plane, const InertialAlignment& inertial) {
   PlaneName found;
-  found.tilt_deg = angle_deg(plane.plane.normal, Eigen::Vector3d(-inertial.gravity_m_s2));
-  if (const auto of_normal = normal_sigma_deg(plane))
-    found.sigma_deg = std::hypot(*of_normal, inertial.gravity_sigma_deg);
+  const Direction up{-inertial.gravity_m_s2.normalized(), inertial.direction_covariance};
+  found.tilt_deg = angle_deg(plane.plane.normal, up.unit);
+  // Without a covariance of this plane, that of the main plane would be too small.
+  if (plane.normal_covariance)
+    found.sigma_deg = angle_sigma_deg({plane.plane.normal, *plane.normal_covariance}, up);
   const double within = std::max(kLevelDeg, 2 * found.sigma_deg.value_or(0));
   const auto near = [&](double tilt_deg) { return std::abs(found.tilt_deg - tilt_deg) <= within; };
   found.name = near(0) ? "floor" : near(180) ? "ceiling" : near(90) ? "wall" : "slanted";

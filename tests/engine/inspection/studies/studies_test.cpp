@@ -121,7 +121,9 @@ Inspection of_planes(const std::vector<Plane>& planes, double gravity_sigma_deg 
   InertialAlignment inertial;
   inertial.ok = true;
   inertial.gravity_m_s2 = -9.81 * kUp;
-  inertial.gravity_sigma_deg = gravity_sigma_deg;
+  const double sigma = radians(gravity_sigma_deg);
+  inertial.direction_covariance =
+      sigma * sigma / 2 * (Eigen::Matrix3d::Identity() - kUp * kUp.transpose());
   inertial.scale = 1.4;
   inertial.scale_known = true;
   inspection.inertial = inertial;
@@ -144,10 +146,23 @@ TEST(PlaneName, FollowsFromNormalAndGravityWithWiderLimitsIfUncertain) {
   for (int k = 0; k < 6; ++k) EXPECT_EQ(name_of(room, k), names[k]) << k;
   EXPECT_EQ(plane_title(room, 2), "plane 3 (table)");
   EXPECT_NEAR(plane_name(room, 0)->tilt_deg, 88, 1e-9);
-  EXPECT_NEAR(plane_name(room, 0)->sigma_deg.value(), 0.5, 1e-9);
+  EXPECT_NEAR(plane_name(room, 0)->sigma_deg.value(), 0.5 / std::sqrt(2), 1e-9);
+  EXPECT_NEAR(plane_name(room, 1)->sigma_deg.value(), 0.5, 1e-9) << "any change tilts a floor";
   EXPECT_EQ(name_of(of_planes({{tilted(12), 1}}, 1), 0), "slanted");
   EXPECT_EQ(name_of(of_planes({{tilted(12), 1}}, 7), 0), "floor");
   EXPECT_EQ(name_of(of_planes({{tilted(12), 1}}, 16), 0), "");
+}
+
+TEST(PlaneName, HasTheUncertaintyOfItsTiltAlone) {
+  Inspection room = of_planes({{tilted(60), 1.0}});
+  auto result = std::make_shared<Initialization>(*room.initialization);
+  const Vector3d axis = kUp.cross(tilted(60)).normalized();  // turns of the normal about it tilt it
+  const Vector3d along = axis.cross(tilted(60));
+  const double tilts = radians(1), turns = radians(7);
+  result->planes[0].normal_covariance = Eigen::Matrix3d(tilts * tilts * along * along.transpose() +
+                                                        turns * turns * axis * axis.transpose());
+  room.initialization = result;
+  EXPECT_NEAR(plane_name(room, 0)->sigma_deg.value(), std::sqrt(1 + 0.5 * 0.5 / 2), 1e-9);
 }
 
 TEST(PlaneName, HasNoUncertaintyWhereTheMethodGivesNoneForThePlane) {
