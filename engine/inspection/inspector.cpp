@@ -6,6 +6,7 @@
 #include "engine/files/refuse.h"
 #include "engine/inspection/recording_facts.h"
 #include "engine/pipeline/method_defaults.h"
+#include "engine/recording/images/frame_faults.h"
 
 #include <algorithm>
 

@@ -4,11 +4,12 @@
 
 #include "engine/inspection/inspection.h"
 #include "engine/pipeline/pipeline.h"
-#include "engine/recording/images/frame_faults.h"
 
 #include <chrono>
 
 namespace gpo {
+
+enum class FrameFault;
 
 /// Called with a stage's name, the steps done and their number (0: unknown): "tracking 41/60".
 using Progress = std::function<void(const std::string& stage, int done, int of)>;

@@ -6,6 +6,7 @@
 #include "engine/inspection/inspector.h"
 #include "engine/pipeline/method_defaults.h"
 #include "engine/recording/board/board.h"
+#include "engine/recording/images/frame_faults.h"
 
 #include <algorithm>
 
