@@ -31,7 +31,7 @@ struct Direction {
 };
 
 /// Returns one standard deviation of the angle between two directions [deg]: that along the arc
-/// between them. Of parallel ones, any change opens the angle.
+/// between them. If they are parallel, any change opens the angle.
 double angle_sigma_deg(const Direction& a, const Direction& b) {
   const double any = std::sqrt(a.covariance.trace() + b.covariance.trace());
   constexpr double kParallel = 2;  // standard deviations

@@ -166,13 +166,11 @@ void check_beside(const fs::path& folder, const std::map<std::string, std::strin
     if (!there || (ours != files.end() && read_file(*there) == ours->second)) continue;
     refuse(*there, "belongs to another recording; choose a folder without it");
   }
-  const bool new_files =
-      std::ranges::any_of(files, [&](const auto& one) { return !is_file(folder / one.first); });
-  if (!new_files || !is_folder(folder)) return;
+  const auto is_new = [&](const auto& one) { return !is_file(folder / one.first); };
+  if (!is_folder(folder) || std::ranges::none_of(files, is_new)) return;
+  const std::string first = files.begin()->first;
   for (const fs::path& other : files_of_kind(folder, FileKind::bag))
-    refuse(other,
-           "would be read with the {} of the new bag; choose a folder without bags",
-           files.begin()->first);
+    refuse(other, "would be read with the {} of the new bag; choose a folder without bags", first);
 }
 
 void check_bag(const Recording& recording,

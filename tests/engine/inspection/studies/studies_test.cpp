@@ -156,7 +156,7 @@ TEST(PlaneName, FollowsFromNormalAndGravityWithWiderLimitsIfUncertain) {
 TEST(PlaneName, HasTheUncertaintyOfItsTiltAlone) {
   Inspection room = of_planes({{tilted(60), 1.0}});
   auto result = std::make_shared<Initialization>(*room.initialization);
-  const Vector3d axis = kUp.cross(tilted(60)).normalized();  // turns of the normal about it tilt it
+  const Vector3d axis = kUp.cross(tilted(60)).normalized();  // rotations about it change the tilt
   const Vector3d along = axis.cross(tilted(60));
   const double tilts = radians(1), turns = radians(7);
   result->planes[0].normal_covariance = Eigen::Matrix3d(tilts * tilts * along * along.transpose() +

@@ -307,43 +307,6 @@ TEST_F(DataSets, InfoListsWhatWasReadAndWhatWasNot) {
   EXPECT_EQ(json[2]["read"], false);
 }
 
-TEST_F(DataSets, InfoNamesASequenceOnceThatIsNotRead) {
-  constexpr int kMany = 130;
-  for (int i = 0; i < kMany; ++i)
-    for (const char* side : {"left", "right"})
-      folder.write(fmt::format("{}_{}.jpg", side, i), color_image(1));
-  std::vector<std::string> not_read;
-  for (const FoundFile& one : describe(*open()).files)
-    if (one.use.empty()) not_read.push_back(to_text(one));
-  EXPECT_THAT(not_read,
-              testing::ElementsAre("right_0.jpg: not read, 130 images: another sequence"));
-}
-
-TEST_F(DataSets, NameImagesThatAreNoFiles) {
-  write_images("{}.png");
-  std::filesystem::create_symlink("nowhere", folder.path() / "7.png");
-  std::filesystem::create_symlink("nowhere", folder.path() / "depth7.png");
-  std::filesystem::create_directory(folder.path() / "10.png");
-  const auto recording = open();
-  EXPECT_EQ(recording->frame_count(), kFrames);
-  EXPECT_THAT(recording->notes, Contains("not read: 7.png (a broken link), 10.png (a folder)"));
-  const std::string text = to_text(describe(*recording));
-  EXPECT_THAT(text, HasSubstr("              7.png: not read, a broken link\n"));
-  EXPECT_THAT(text, HasSubstr("              10.png: not read, a folder\n"));
-  for (int i = 20; i < 30; ++i)
-    std::filesystem::create_symlink("nowhere", file(fmt::format("{}.png", i)));
-  EXPECT_THAT(open()->notes,
-              Contains("not read: 7.png (a broken link), 10.png (a folder), "
-                       "20.png (a broken link), 9 more names of images"));
-}
-
-TEST_F(DataSets, NameImagesThatAreNoFilesWithoutEurocsList) {
-  write_images("mav0/cam0/data/100000000{}.png");
-  folder.write("mav0/cam0/sensor.yaml", kCameraYaml);
-  std::filesystem::create_symlink("nowhere", file("mav0/cam0/data/1000000007.png"));
-  EXPECT_THAT(open()->notes, Contains("not read: 1000000007.png (a broken link)"));
-}
-
 std::filesystem::path layout_case(const char* name) {
   return std::filesystem::path(GPO_SOURCE_DIR) / "../shared/data/cases/dataset-layouts" / name;
 }
