@@ -12,9 +12,9 @@ namespace {
 
 using testing::Contains, testing::HasSubstr;
 
-constexpr int kFrames = 5;
+constexpr int kListedImages = 5;
 
-cv::Mat image() { return {48, 64, CV_8UC3, cv::Scalar::all(10)}; }
+cv::Mat listed_image() { return {48, 64, CV_8UC3, cv::Scalar::all(10)}; }
 
 class FoundFiles : public RecordingFolder {};
 
@@ -22,7 +22,7 @@ TEST_F(FoundFiles, NameASequenceOnceThatIsNotRead) {
   constexpr int kMany = 130;
   for (int i = 0; i < kMany; ++i)
     for (const char* side : {"left", "right"})
-      folder.write(fmt::format("{}_{}.jpg", side, i), image());
+      folder.write(fmt::format("{}_{}.jpg", side, i), listed_image());
   std::vector<std::string> not_read;
   for (const FoundFile& one : describe(*open()).files)
     if (one.use.empty()) not_read.push_back(to_text(one));
@@ -31,12 +31,12 @@ TEST_F(FoundFiles, NameASequenceOnceThatIsNotRead) {
 }
 
 TEST_F(FoundFiles, NameImagesThatAreNoFiles) {
-  for (int i = 0; i < kFrames; ++i) folder.write(fmt::format("{}.png", i), image());
+  for (int i = 0; i < kListedImages; ++i) folder.write(fmt::format("{}.png", i), listed_image());
   std::filesystem::create_symlink("nowhere", folder.path() / "7.png");
   std::filesystem::create_symlink("nowhere", folder.path() / "depth7.png");
   std::filesystem::create_directory(folder.path() / "10.png");
   const auto recording = open();
-  EXPECT_EQ(recording->frame_count(), kFrames);
+  EXPECT_EQ(recording->frame_count(), kListedImages);
   EXPECT_THAT(recording->notes, Contains("not read: 7.png (a broken link), 10.png (a folder)"));
   const std::string text = to_text(describe(*recording));
   EXPECT_THAT(text, HasSubstr("              7.png: not read, a broken link\n"));
@@ -49,8 +49,8 @@ TEST_F(FoundFiles, NameImagesThatAreNoFiles) {
 }
 
 TEST_F(FoundFiles, NameImagesThatAreNoFilesWithoutEurocsList) {
-  for (int i = 0; i < kFrames; ++i)
-    folder.write(fmt::format("mav0/cam0/data/100000000{}.png", i), image());
+  for (int i = 0; i < kListedImages; ++i)
+    folder.write(fmt::format("mav0/cam0/data/100000000{}.png", i), listed_image());
   folder.write("mav0/cam0/sensor.yaml", kCameraYaml);
   std::filesystem::create_symlink("nowhere", file("mav0/cam0/data/1000000007.png"));
   EXPECT_THAT(open()->notes, Contains("not read: 1000000007.png (a broken link)"));
