@@ -62,8 +62,10 @@ fs::path write_recorded(const Recording& recording,
     write_recording(recording, std::nullopt, format, output, std::ref(bar));
     return output;
   } catch (const InputError& error) {
-    const fs::path own = folder_of(output) / output.stem();
-    if (format == RecordingFormat::euroc || fs::exists(own)) throw;
+    if (format == RecordingFormat::euroc) throw;
+    fs::path own = folder_of(output) / output.stem();
+    for (int k = 2; fs::exists(own); ++k)
+      own.replace_filename(fmt::format("{}-{}", output.stem().string(), k));
     write_recording(recording, std::nullopt, format, own / output.filename(), std::ref(bar));
     fmt::print(stderr, "{}\n", error.what());
     return own / output.filename();

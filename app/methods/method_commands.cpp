@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "app/methods/method_commands.h"
 
+#include "app/terminal/terminal.h"
 #include "engine/base/error.h"
 #include "engine/files/text_file.h"
 #include "engine/results/result_method.h"
@@ -42,14 +43,6 @@ void check_can_be_shown(const std::vector<std::string>& waiting) {
 }
 
 }  // namespace
-
-std::function<std::string(const std::string&)> number_within(double least, double most) {
-  return [=](const std::string& text) {
-    const auto value = parse_number(text);
-    if (value && *value >= least && *value <= most) return std::string();
-    return fmt::format("'{}', expected a number from {:g} to {:g}", text, least, most);
-  };
-}
 
 void MethodLog::add(const std::string& name, const std::string& line) {
   constexpr int kMaxLines = 200;

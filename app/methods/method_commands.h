@@ -19,9 +19,6 @@ class App;
 
 namespace gpo {
 
-/// Checks an option for a finite number within a range, ends included: CLI::Range accepts nan.
-std::function<std::string(const std::string&)> number_within(double least, double most);
-
 /// Messages of the user's own methods, for standard error and the window's log. Thread-safe.
 class MethodLog {
  public:

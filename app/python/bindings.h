@@ -90,6 +90,9 @@ struct Request {
     return with_window_within(settings, given, recording.frame_count());
   }
 };
+/// Throws InputError that begins with `name` unless a number is in a range, ends included.
+void check_within(const char* name, double value, double least, double most);
+
 /// Takes the keywords of own methods out of `given`. Throws InputError.
 OwnMethods take_methods(py::kwargs& given);
 /// Returns methods as the command line writes them. Adds callables to the table by their names.

@@ -140,6 +140,7 @@ py::object evaluated(const std::vector<RecordingOrPath>& recordings,
                      int jobs,
                      const std::optional<fs::path>& output,
                      py::kwargs given) {
+  check_within("jobs", jobs, 0, 1024);
   MethodTable table = take_methods(given).table;
   const std::string names = methods_text(methods, table);
   const ExperimentRequest request{

@@ -34,11 +34,18 @@ std::vector<std::string> take_texts(py::kwargs& given, const char* key) {
 
 }  // namespace
 
+void check_within(const char* name, double value, double least, double most) {
+  if (!(value >= least && value <= most))
+    throw InputError(fmt::format("{}: {}, expected {} to {}", name, value, least, most));
+}
+
 OwnMethods take_methods(py::kwargs& given) {
   MethodArguments arguments;
   arguments.specs = {take_texts(given, "method_command"), take_texts(given, "result")};
-  if (given.contains("method_timeout"))
+  if (given.contains("method_timeout")) {
     arguments.timeout_s = given.attr("pop")("method_timeout").cast<double>();
+    check_within("method_timeout", arguments.timeout_s, 0.01, 1e5);
+  }
   if (given.contains("method_resample"))
     arguments.resample = given.attr("pop")("method_resample").cast<bool>();
   return OwnMethods(arguments);

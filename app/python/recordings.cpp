@@ -241,6 +241,7 @@ ExportNotes export_result(const Result& result,
     throw InputError(
         "export: this result is a copy or was restored, without its recording. Run again to "
         "export");
+  check_within("cube_side", cube_side, 0, 1e6);
   const ExportRequest request{&export_format(format), path};
   check_export(request);
   return interruptible(

@@ -93,6 +93,14 @@ void write_output(const fs::path& file, const std::string& content) {
   write_file(file, content);
 }
 
+std::function<std::string(const std::string&)> number_within(double least, double most) {
+  return [=](const std::string& text) {
+    const auto value = parse_number(text);
+    if (value && *value >= least && *value <= most) return std::string();
+    return fmt::format("'{}', expected a number from {:g} to {:g}", text, least, most);
+  };
+}
+
 void silence_libraries() {
   cv::ocl::setUseOpenCL(false);
   cv::utils::logging::setLogLevel(cv::utils::logging::LOG_LEVEL_SILENT);

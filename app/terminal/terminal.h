@@ -8,6 +8,7 @@
 #include <atomic>
 #include <csignal>
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <stop_token>
 #include <string>
@@ -31,6 +32,9 @@ void check_outputs(const std::vector<NamedFile>& outputs, const std::vector<Name
 
 /// Writes to a file, whose folder is created if missing, or to standard output. Throws InputError.
 void write_output(const std::filesystem::path& file, const std::string& content);
+
+/// Checks an option for a finite number within a range, ends included: CLI::Range accepts nan.
+std::function<std::string(const std::string&)> number_within(double least, double most);
 
 /// Turns off the log output of OpenCV and libav, and OpenCL, which the engine does not use.
 void silence_libraries();
