@@ -335,9 +335,11 @@ std::shared_ptr<const Inspection> Inspector::inspect(const Settings& settings,
       if (const auto scale = known_scale(inspection); scale && e.scale)
         e.scale_error_percent = 100 * (*scale / *e.scale - 1);
     }
+    // The board is on that plane, too.
+    const auto board =
+        main_plane_is_true ? stages.board_corners.value : std::vector<Eigen::Vector2d>{};
     const auto place = [&](const Plane& plane, const Pose& reference) {
-      return place_cube(
-          plane, reference, *inspection.recording, *inspection.window, stages.board_corners.value);
+      return place_cube(plane, reference, *inspection.recording, *inspection.window, board);
     };
     inspection.cube = place(inspection.initialization->plane, Pose{});
     const WindowTruth* truth = inspection.truth.get();

@@ -75,6 +75,20 @@ double apart_px(const Inspection& inspection,
   return most;
 }
 
+TEST(Cube, StandsOnItsOwnPlaneIfTheBoardIsOnAnother) {
+  Inspector inspector(test::desk());
+  const auto first = inspector.inspect({});
+  const auto second = inspector.inspect({.options = {.plane = 2}});
+  ASSERT_TRUE(first->cube && second->cube);
+  EXPECT_TRUE(first->cube->on_board);
+  EXPECT_FALSE(second->cube->on_board);
+  const auto& tracks = second->window->planes.at(1).tracks;
+  Eigen::AlignedBox2d seen;
+  for (const int j : tracks) seen.extend(second->window->points_px[0].col(j));
+  const Eigen::Vector2d at_px = (second->window->K * second->cube->origin).hnormalized();
+  EXPECT_TRUE(seen.contains(at_px)) << at_px.transpose();
+}
+
 TEST(Cube, MovesToTheSamePlaceInTruth) {
   // The most accurate method here.
   const Settings settings{.start = 20, .frames = 30, .options = {.method = "ba"}};
