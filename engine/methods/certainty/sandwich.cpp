@@ -11,6 +11,7 @@
 #include <numeric>
 #include <utility>
 
+#include <Eigen/Cholesky>
 #include <Eigen/Geometry>
 
 namespace gpo {
@@ -36,7 +37,42 @@ SharedMatrix spread_by_frame(const Influences& all, int frames, double degrees_o
   return degrees_of_freedom * (of_frames - all.shared * all.shared.transpose());
 }
 
+/// Returns the share of `independent` in the mean with the sum over the moves' squares that has the
+/// least expected error, in axes in which `independent` is the identity (Ledoit and Wolf 2004).
+double shrinkage(const Eigen::MatrixXd& moves, const Eigen::MatrixXd& independent) {
+  // A bias and one rotation per frame have directions without information, in which both are zero
+  // up to rounding.
+  constexpr double kLeast = 1e-6;
+  const Eigen::VectorXd variances = independent.diagonal();
+  const Eigen::VectorXd scales = (variances.array() > 0).select(variances.cwiseSqrt(), 1);
+  Eigen::MatrixXd correlations = independent.array() / (scales * scales.transpose()).array();
+  correlations.diagonal().array() = 1 + kLeast;
+  const Eigen::LLT<Eigen::MatrixXd> factor(correlations);
+  if (factor.info() != Eigen::Success) return 1;
+  const Eigen::MatrixXd white = factor.matrixL().solve(scales.cwiseInverse().asDiagonal() * moves);
+  Eigen::MatrixXd sum = square_of(white);
+  const double chance = white.colwise().squaredNorm().squaredNorm() -
+                        sum.squaredNorm() / static_cast<double>(moves.cols());
+  sum.diagonal().array() -= sum.diagonal().mean();
+  return std::clamp(chance / sum.squaredNorm(), 0.0, 1.0);
+}
+
 }  // namespace
+
+Eigen::MatrixXd power_of_positive(const Eigen::MatrixXd& A, double power) {
+  const auto [values, vectors] = symmetric_eigen(A);
+  const double least = 1e-12 * values.cwiseAbs().maxCoeff();
+  const Eigen::VectorXd powers =
+      values.unaryExpr([&](double v) { return v > least ? std::pow(v, power) : 0; });
+  return vectors * powers.asDiagonal() * vectors.transpose();
+}
+
+Eigen::MatrixXd square_of(const Eigen::MatrixXd& moves) {
+  Eigen::MatrixXd all = Eigen::MatrixXd::Zero(moves.rows(), moves.rows());
+  if (moves.cols() > 0) all.selfadjointView<Eigen::Lower>().rankUpdate(moves);
+  all.triangularView<Eigen::StrictlyUpper>() = all.transpose();
+  return all;
+}
 
 Eigen::Matrix<double, 8, Eigen::Dynamic> weighted_jacobian(const FrameObservations& f,
                                                            const FrameState& state,
@@ -181,6 +217,24 @@ Influences influences_of(const Sandwich& sandwich) {
   return all;
 }
 
+Eigen::MatrixXd shrunk_covariance(const Eigen::MatrixXd& moves,
+                                  const Eigen::MatrixXd& independent,
+                                  std::span<const int> blocks) {
+  const double share = shrinkage(moves, independent);
+  const Eigen::MatrixXd by_cluster = square_of(moves);
+  Eigen::MatrixXd shrunk = (1 - share) * by_cluster + share * independent;
+  Index at = 0;
+  for (const int size : blocks) {
+    const auto rows = Eigen::seqN(at, size);
+    const Eigen::MatrixXd F = power_of_positive(by_cluster(rows, rows), 0.5) *
+                              power_of_positive(shrunk(rows, rows), -0.5);
+    shrunk(rows, Eigen::all) = (F * shrunk(rows, Eigen::all)).eval();
+    shrunk(Eigen::all, rows) = (shrunk(Eigen::all, rows) * F.transpose()).eval();
+    at += size;
+  }
+  return shrunk;
+}
+
 Spread spread_of(const Sandwich& sandwich, const Influences& all, double degrees_of_freedom) {
   const int frames = sandwich.solved.frame_count();
   const auto size = all.shared.rows(), own = all.own.rows();
@@ -208,6 +262,19 @@ Spread spread_of(const Sandwich& sandwich, const Influences& all, double degrees
   const auto of_normal = [](const SharedMatrix& x) { return x.topLeftCorner<2, 2>().trace(); };
   if (of_normal(both) > of_normal(spread.shared) && symmetric_eigen(both).values(0) >= 0)
     spread.shared = both;
+  return spread;
+}
+
+Spread spread_by_observation(const Influences& all, double degrees_of_freedom) {
+  Spread spread{degrees_of_freedom * all.shared * all.shared.transpose(),
+                std::vector<SharedMatrix>(1),
+                std::vector<OwnMatrix>(1)};
+  for (std::size_t i = 1; i + 1 < all.first.size(); ++i) {
+    const auto columns = Eigen::seq(all.first[i], all.first[i + 1] - 1);
+    const Eigen::MatrixXd e = all.own(Eigen::all, columns);
+    spread.cross.emplace_back(degrees_of_freedom * all.shared(Eigen::all, columns) * e.transpose());
+    spread.own.emplace_back(degrees_of_freedom * e * e.transpose());
+  }
   return spread;
 }
 

@@ -8,6 +8,7 @@
 #include "engine/window/window.h"
 
 #include <optional>
+#include <span>
 #include <vector>
 
 #include <Eigen/Core>
@@ -88,6 +89,19 @@ struct Influences {
 
 Influences influences_of(const Sandwich& sandwich);
 
+/// Returns the power of the part of a symmetric matrix that is positive definite.
+Eigen::MatrixXd power_of_positive(const Eigen::MatrixXd& A, double power);
+/// Returns the sum over all columns m of m m^T.
+Eigen::MatrixXd square_of(const Eigen::MatrixXd& moves);
+
+/// Returns `square_of` the moves with its correlations shrunk toward those of `independent`, the
+/// covariance for independent errors: of few moves, it knows nothing about most directions, and its
+/// inverse would claim that these are exact. The diagonal blocks, of these sizes, remain
+/// (engine/method.md, eq. 14g).
+Eigen::MatrixXd shrunk_covariance(const Eigen::MatrixXd& moves,
+                                  const Eigen::MatrixXd& independent,
+                                  std::span<const int> blocks);
+
 /// Sums over clusters of observations of their displacements x and e of the solution.
 struct Spread {
   SharedMatrix shared;              ///< sum x x^T
@@ -100,6 +114,9 @@ struct Spread {
 /// Returns the spread with tracks as clusters and, for the shared unknowns, also frames; errors
 /// that all observations of a frame share go into its own unknowns.
 Spread spread_of(const Sandwich& sandwich, const Influences& all, double degrees_of_freedom);
+
+/// Returns the spread with single observations as clusters: that of independent errors.
+Spread spread_by_observation(const Influences& all, double degrees_of_freedom);
 
 /// Returns the displacement by each observed track, weighted so that the sums of squares are those
 /// of `spread_of`.

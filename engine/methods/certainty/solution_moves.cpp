@@ -56,6 +56,54 @@ WalkMoves walk_moves(const Sandwich& sandwich) {
   return walk;
 }
 
+/// Returns d(centers, bias, planes) / d(shared): p_wc = -tau with tau_i + R_wci t, t = -gain x.
+Eigen::MatrixXd results_by_shared(const PlaneMotion& motion, const Bread& bread) {
+  const auto frames = std::ssize(motion.tau);
+  const int bias_rows = bread.layout.gyro > 0 ? 3 : 0;
+  const int of_planes = bread.layout.of_gyro();
+  Eigen::MatrixXd M =
+      Eigen::MatrixXd::Zero(3 * (frames - 1) + bias_rows + of_planes, bread.layout.size());
+  for (Eigen::Index i = 1; i < frames; ++i)
+    M.middleRows<3>(3 * (i - 1)) = motion.R_wc[i] * bread.frames[i].gain.bottomRows<3>();
+  if (bias_rows > 0) M.block<3, 3>(3 * (frames - 1), of_planes).setIdentity();
+  M.bottomLeftCorner(of_planes, of_planes).setIdentity();
+  return M;
+}
+
+struct ResultMoves {
+  Eigen::MatrixXd results;  ///< displacements of (centers, bias, planes), in columns
+  Eigen::MatrixXd shared;   ///< displacements of the shared unknowns
+};
+
+ResultMoves moves_of_results(const PlaneMotion& motion,
+                             const Eigen::MatrixXd& M,
+                             std::span<const SolutionMove> moves) {
+  ResultMoves all{Eigen::MatrixXd::Zero(M.rows(), std::ssize(moves)),
+                  Eigen::MatrixXd(M.cols(), std::ssize(moves))};
+  for (Eigen::Index k = 0; k < std::ssize(moves); ++k) {
+    all.shared.col(k) = moves[k].shared;
+    for (Eigen::Index i = 1; i < std::ssize(motion.tau); ++i)
+      all.results.col(k).segment<3>(3 * (i - 1)) = -motion.R_wc[i] * moves[k].own[i].tail<3>();
+  }
+  all.results += M * all.shared;
+  return all;
+}
+
+Eigen::MatrixXd spread_of_results(const PlaneMotion& motion,
+                                  const Eigen::MatrixXd& M,
+                                  const Spread& spread) {
+  Eigen::MatrixXd all = M * spread.shared * M.transpose();
+  for (Eigen::Index i = 1; i < std::ssize(motion.tau); ++i) {
+    const Eigen::Matrix3d& R = motion.R_wc[i];
+    const Eigen::Index at = 3 * (i - 1);
+    const Eigen::MatrixXd cross = -M * spread.cross[i].rightCols<3>() * R.transpose();
+    all.middleCols<3>(at) += cross;
+    all.middleRows<3>(at) += cross.transpose();
+    all.block<3, 3>(at, at) += R * spread.own[i].bottomRightCorner<3, 3>() * R.transpose();
+  }
+  return all;
+}
+
 }  // namespace
 
 std::vector<SolutionMove> moves_by_gyro_noise(const Sandwich& sandwich) {
@@ -125,32 +173,19 @@ std::vector<SolutionMove> moves_by_lens(const Sandwich& sandwich, LensMoves move
 
 Eigen::MatrixXd joint_covariance(const PlaneMotion& motion,
                                  const Bread& bread,
-                                 std::span<const SolutionMove> moves,
-                                 const SharedMatrix& shared) {
-  const auto frames = static_cast<Eigen::Index>(motion.tau.size());
-  const int bias_rows = bread.layout.gyro > 0 ? 3 : 0;
-  const int of_planes = bread.layout.of_gyro();
-  // d(centers, bias, planes) / d(shared): p_wc = -tau with tau_i + R_wci t, t = -gain x.
-  Eigen::MatrixXd M =
-      Eigen::MatrixXd::Zero(3 * (frames - 1) + bias_rows + of_planes, bread.layout.size());
-  for (Eigen::Index i = 1; i < frames; ++i)
-    M.middleRows<3>(3 * (i - 1)) = motion.R_wc[i] * bread.frames[i].gain.bottomRows<3>();
-  if (bias_rows > 0) M.block<3, 3>(3 * (frames - 1), of_planes).setIdentity();
-  M.bottomLeftCorner(of_planes, of_planes).setIdentity();
-  const auto count = static_cast<Eigen::Index>(moves.size());
-  Eigen::MatrixXd x(bread.layout.size(), count);
-  Eigen::MatrixXd own = Eigen::MatrixXd::Zero(M.rows(), count);
-  for (Eigen::Index k = 0; k < count; ++k) {
-    x.col(k) = moves[k].shared;
-    for (Eigen::Index i = 1; i < frames; ++i)
-      own.col(k).segment<3>(3 * (i - 1)) = -motion.R_wc[i] * moves[k].own[i].tail<3>();
-  }
-  const Eigen::MatrixXd Z = M * x + own;
-  const SharedMatrix rest = shared - x * x.transpose();
-  Eigen::MatrixXd all = M * rest * M.transpose();
-  all.selfadjointView<Eigen::Lower>().rankUpdate(Z);
-  all.triangularView<Eigen::StrictlyUpper>() = all.transpose();
-  return all;
+                                 const JointParts& parts) {
+  const Eigen::MatrixXd M = results_by_shared(motion, bread);
+  const auto [of_tracks, tracks] = moves_of_results(motion, M, parts.tracks);
+  const auto [of_others, others] = moves_of_results(motion, M, parts.others);
+  const SharedMatrix rest =
+      parts.shared - tracks * tracks.transpose() - others * others.transpose();
+  std::vector<int> blocks(bread.frames.size() - 1, 3);
+  if (bread.layout.gyro > 0) blocks.push_back(3);
+  bread.layout.add_plane_sizes(blocks);
+  const Eigen::MatrixXd shrunk =
+      shrunk_covariance(of_tracks, spread_of_results(motion, M, parts.observations), blocks);
+  // A decrease by errors that frames share would exceed what few tracks have in its direction.
+  return shrunk + square_of(of_others) + M * power_of_positive(rest, 1) * M.transpose();
 }
 
 }  // namespace gpo

@@ -26,12 +26,18 @@ std::vector<SolutionMove> moves_by_lens(const Sandwich& sandwich, LensMoves move
 /// eq. 14f).
 void add_gyro_noise(const Sandwich& sandwich, Spread& spread);
 
+struct JointParts {
+  std::span<const SolutionMove> tracks;  ///< `moves_by_track`
+  const Spread& observations;            ///< `spread_by_observation`
+  std::span<const SolutionMove> others;  ///< by the gyroscope and the lens
+  const SharedMatrix& shared;            ///< covariance of the shared unknowns by all errors
+};
+
 /// Returns the joint covariance of all camera centers but the first, the gyroscope bias if it is a
-/// shared unknown, and the planes (`Uncertainty::joint_covariance`): the sum over all moves plus
-/// the rest of `shared`, the covariance of the shared unknowns.
+/// shared unknown, and the planes (`Uncertainty::joint_covariance`): the shrunk sum over tracks,
+/// the sum over all other moves, and the rest of the shared unknowns' covariance.
 Eigen::MatrixXd joint_covariance(const PlaneMotion& motion,
                                  const Bread& bread,
-                                 std::span<const SolutionMove> moves,
-                                 const SharedMatrix& shared);
+                                 const JointParts& parts);
 
 }  // namespace gpo

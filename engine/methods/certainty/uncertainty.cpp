@@ -218,10 +218,15 @@ std::optional<Uncertainty> uncertainty_of(const SolvedPlanes& solved,
   result.center_covariances = std::move(all.centers);
   for (const double v : all.distance_ratios) result.distance_ratio_sigmas.push_back(std::sqrt(v));
   if (centers == Centers::jointly) {
-    std::vector<SolutionMove> moves = moves_by_track(sandwich, influences, degrees_of_freedom);
-    std::ranges::move(moves_by_gyro_noise(sandwich), std::back_inserter(moves));
-    std::ranges::move(moves_of_image, std::back_inserter(moves));
-    result.joint_covariance = joint_covariance(motion, bread, moves, spread.shared);
+    std::vector<SolutionMove> others = moves_by_gyro_noise(sandwich);
+    std::ranges::move(moves_of_image, std::back_inserter(others));
+    result.joint_covariance =
+        joint_covariance(motion,
+                         bread,
+                         {.tracks = moves_by_track(sandwich, influences, degrees_of_freedom),
+                          .observations = spread_by_observation(influences, degrees_of_freedom),
+                          .others = others,
+                          .shared = spread.shared});
     result.joint_bias_rows = bread.layout.gyro > 0 ? 3 : 0;
   }
   if (model == RotationModel::bias)

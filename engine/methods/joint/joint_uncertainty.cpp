@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/methods/joint/joint_uncertainty.h"
 
+#include "engine/methods/certainty/sandwich.h"
+
 #include <algorithm>
 #include <cmath>
 #include <numeric>
@@ -82,6 +84,17 @@ std::vector<Index> unknowns_of_results(const JointLayout& layout) {
   for (int i = 1; layout.own == 6 && i < layout.frames; ++i)
     for (int axis = 0; axis < 3; ++axis) unknowns.push_back(layout.at_frame(i) + axis);
   return unknowns;
+}
+
+/// Returns the numbers of unknowns that belong together, in the order of `unknowns_of_results`.
+std::vector<int> blocks_of_results(const JointLayout& layout) {
+  std::vector<int> sizes;
+  layout.shared.add_plane_sizes(sizes);
+  if (layout.shared.gyro > 0) sizes.push_back(3);
+  if (layout.shared.gyro > 3) sizes.push_back(1);  // the time offset
+  if (layout.row_delay > 0) sizes.push_back(1);
+  sizes.insert(sizes.end(), (layout.own / 3) * (layout.frames - 1), 3);
+  return sizes;
 }
 
 /// Returns D M, D = d(rotation, center) / d(unknowns of results) of all cameras but the first.
@@ -231,14 +244,13 @@ Uncertainty uncertainty_of(const Model& model,
   const MatrixXd moves =
       std::sqrt(freedom * tracks / std::max(1.0, tracks - 1)) * (gain.transpose() * at.by_track);
   const MatrixXd of_priors = variance * spread_of_priors(prior, gain);
-  MatrixXd of_tracks = MatrixXd::Zero(moves.rows(), moves.rows());
-  of_tracks.selfadjointView<Eigen::Lower>().rankUpdate(moves);
-  of_tracks.triangularView<Eigen::StrictlyUpper>() = of_tracks.transpose();
-  const double of_normal = normal_variance(of_tracks);
+  const double of_normal = moves.topRows<2>().squaredNorm();
   const double independent = variance * normal_variance(gain) - normal_variance(of_priors);
   const double wider = std::max({1.0, independent / of_normal, neighbors_ratio(model, moves)});
   const MatrixXd by_lens = moves_by_lens(layout, at.A, gain);
-  MatrixXd covariance = wider * of_tracks + of_priors;
+  const MatrixXd of_noise = variance * gain(wanted, Eigen::all) - of_priors;
+  MatrixXd covariance =
+      wider * shrunk_covariance(moves, of_noise, blocks_of_results(layout)) + of_priors;
   if (!layout.typical_lens) covariance += by_lens * by_lens.transpose();
 
   Uncertainty result;

@@ -101,6 +101,10 @@ struct UnknownsLayout {
   static int of_plane(int plane) { return plane == 0 ? 0 : 3 * plane - 1; }
   static int size_of_plane(int plane) { return plane == 0 ? 2 : 3; }
   int of_gyro() const { return 2 + 3 * others; }
+  /// Appends the number of unknowns of each plane.
+  void add_plane_sizes(std::vector<int>& sizes) const {
+    for (int plane = 0; plane <= others; ++plane) sizes.push_back(size_of_plane(plane));
+  }
   int size() const { return of_gyro() + gyro; }
 };
 

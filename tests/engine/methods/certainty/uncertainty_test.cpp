@@ -364,5 +364,31 @@ TEST(JointCenters, ContainCovariancesOfCentersAndBias) {
   }
 }
 
+/// The sum over 40 tracks alone has no more than 40 of its 87 dimensions.
+TEST(JointCenters, HaveErrorsOfTheirInverseWithFewTracks) {
+  constexpr int kWindows = 24;
+  for (const char* method : {"gpo_joint", "gpo"}) {
+    for (const int points : {40, 150}) {
+      double sum = 0;
+      for (std::uint64_t seed = 1; seed <= kWindows; ++seed) {
+        Simulation truth = simulate_fitted({.motion = motion_of_seed(seed),
+                                            .points = points,
+                                            .gyro_bias_rad_s = 0.005,
+                                            .seed = seed});
+        truth.window.rotations = RotationModel::bias;
+        const Initialization result = solved_by(method, truth.window);
+        const Eigen::Index rows = 3 * (std::ssize(truth.cameras) - 1);
+        Eigen::VectorXd error(rows);
+        for (Eigen::Index i = 0; i < rows / 3; ++i)
+          error.segment<3>(3 * i) = result.cameras[i + 1].p_wc - truth.cameras[i + 1].p_wc;
+        const auto covariance = result.uncertainty->joint_covariance.topLeftCorner(rows, rows);
+        sum += error.dot(covariance.llt().solve(error)) / static_cast<double>(rows);
+      }
+      EXPECT_GT(sum / kWindows, 0.6) << method << ' ' << points;
+      EXPECT_LT(sum / kWindows, 1.7) << method << ' ' << points;
+    }
+  }
+}
+
 }  // namespace
 }  // namespace gpo::test
