@@ -72,10 +72,12 @@ struct TrackFrame {
   /// Transfer error by the frame's homography, undistorted, which RANSAC compares with its
   /// threshold; nullopt in the reference frame.
   std::optional<double> transfer_px = {};
-  /// Residual against the result's plane and poses [raw px]; nullopt without a prediction.
+  /// Residual against the track's plane, or the main plane if it is on none, and the poses of the
+  /// result [raw px]; nullopt without a prediction.
   std::optional<double> residual_px = {};
   std::optional<double> forward_backward_px = {};  ///< nullopt if not measured
-  bool inlier = false;
+  bool inlier = false;                             ///< of the leading plane
+  bool on_its_plane = false;                       ///< inlier of the plane that the track is on
 };
 
 /// History of a track of a window.
@@ -83,7 +85,7 @@ struct TrackLife {
   std::int64_t id = 0;
   int column = 0;                                 ///< column of the window's matrices
   std::vector<TrackFrame> frames;                 ///< frames that see it
-  std::optional<double> depth;                    ///< map point's depth in the reference camera [d]
+  std::optional<double> depth;                    ///< in the reference camera, on its plane [d]
   std::optional<int> inlier_since, inlier_until;  ///< in the recording, the reference frame aside
   std::string verdict;                            ///< one sentence for people
 };
@@ -91,8 +93,8 @@ struct TrackLife {
 /// Returns the history of a column of the window; for an excluded track as it was observed.
 TrackLife track_life(const Inspection& inspection, int column);
 
-/// Returns the RMS of the residuals in the frames where the track is an inlier of the leading
-/// plane; nullopt without any.
+/// Returns the RMS of the residuals in the frames where the track is an inlier of its plane;
+/// nullopt without any.
 std::optional<double> rms_residual_px(const TrackLife& life);
 
 /// Returns every track of a window in every frame that sees it, as a table that `read_tracks` can

@@ -19,8 +19,38 @@ std::optional<double> if_finite(double value) {
   return std::isfinite(value) ? std::optional(value) : std::nullopt;
 }
 
+/// The plane that a track is on, else the leading one; null without a result.
+struct TrackPlane {
+  const Plane* plane = nullptr;
+  int number = 0;  ///< in the window
+};
+
+TrackPlane plane_of_track(const Inspection& inspection, int column) {
+  const Initialization& result = *inspection.initialization;
+  const int leader = inspection.window->leader;
+  if (!result.ok) return {nullptr, leader};
+  if (const auto number = inspection.window->plane_of(column); number && *number != leader)
+    for (const PlaneEstimate& estimate : result.planes)
+      if (estimate.number == *number) return {&estimate.plane, *number};
+  return {&result.plane, leader};
+}
+
+Eigen::Matrix3d homography_of(const Window& window, const Pose& pose, const Plane& plane) {
+  const Eigen::Vector3d tau = -pose.p_wc / plane.distance;
+  return window.K * pose.R_wc.transpose() *
+         (Eigen::Matrix3d::Identity() - tau * plane.normal.transpose()) * window.K.inverse();
+}
+
+/// Returns the depth at which a track's first ray meets its plane.
+std::optional<double> depth_on(const Plane& plane, const Inspection& inspection, int column) {
+  const Window& window = *inspection.window;
+  const Eigen::Vector3d ray = window.K.inverse() * window.points_px[0].col(column).homogeneous();
+  const double depth = -plane.distance / plane.normal.dot(ray);
+  return std::isfinite(depth) && depth > 0 ? std::optional(depth) : std::nullopt;
+}
+
 /// Reads the tracks, not the window, which does not have the excluded ones.
-TrackFrame frame_of(const Inspection& inspection, int frame, int column) {
+TrackFrame frame_of(const Inspection& inspection, int frame, int column, const TrackPlane& on) {
   const Tracks& tracks = *inspection.tracks;
   const Window& window = *inspection.window;
   const Camera& camera = inspection.recording->camera;
@@ -30,11 +60,15 @@ TrackFrame frame_of(const Inspection& inspection, int frame, int column) {
     const Eigen::Vector2d undistorted_px = undistort(camera, seen.raw_px);
     seen.transfer_px = if_finite((transfer(window.H_i1[frame], first_px) - undistorted_px).norm());
   }
-  if (const auto H = estimated_homography(inspection, frame))
-    seen.residual_px = if_finite((distort(camera, transfer(*H, first_px)) - seen.raw_px).norm());
+  if (on.plane != nullptr) {
+    const auto H = homography_of(window, inspection.initialization->cameras[frame], *on.plane);
+    seen.residual_px = if_finite((distort(camera, transfer(H, first_px)) - seen.raw_px).norm());
+  }
   if (!tracks.forward_backward_px.empty())
     seen.forward_backward_px = if_finite(tracks.forward_backward_px[frame][column]);
   seen.inlier = window.inlier[frame][column];
+  seen.on_its_plane =
+      on.number == window.leader ? seen.inlier : window.planes[on.number].inlier[frame][column];
   return seen;
 }
 
@@ -149,11 +183,7 @@ std::optional<Eigen::Matrix3d> estimated_homography(const Inspection& inspection
   const Window& window = *inspection.window;
   const Initialization& estimate = *inspection.initialization;
   if (!estimate.ok) return std::nullopt;
-  const Pose& pose = estimate.cameras[frame_in_window];
-  const Eigen::Vector3d tau = -pose.p_wc / estimate.plane.distance;
-  return window.K * pose.R_wc.transpose() *
-         (Eigen::Matrix3d::Identity() - tau * estimate.plane.normal.transpose()) *
-         window.K.inverse();
+  return homography_of(window, estimate.cameras[frame_in_window], estimate.plane);
 }
 
 std::vector<double> residuals_px(const Inspection& inspection, int frame_in_window) {
@@ -173,18 +203,20 @@ std::vector<double> residuals_px(const Inspection& inspection, int frame_in_wind
 
 TrackLife track_life(const Inspection& inspection, int column) {
   const Tracks& tracks = *inspection.tracks;
+  const TrackPlane on = plane_of_track(inspection, column);
   TrackLife life;
   life.id = tracks.ids[column];
   life.column = column;
   for (int i = 0; i < tracks.frame_count(); ++i) {
     if (!tracks.seen(i, column)) continue;
-    life.frames.push_back(frame_of(inspection, i, column));
+    life.frames.push_back(frame_of(inspection, i, column, on));
     if (i == 0 || !life.frames.back().inlier) continue;
     life.inlier_until = life.frames.back().frame;
     if (!life.inlier_since) life.inlier_since = life.inlier_until;
   }
   for (const MapPoint& point : inspection.initialization->points)
     if (point.track == column) life.depth = point.position.z();
+  if (on.number != inspection.window->leader) life.depth = depth_on(*on.plane, inspection, column);
   life.verdict = verdict_of(inspection, life);
   if (const std::string loss = loss_of(tracks, column); !loss.empty()) life.verdict += "; " + loss;
   return life;
@@ -194,7 +226,7 @@ std::optional<double> rms_residual_px(const TrackLife& life) {
   double sum = 0;
   int count = 0;
   for (const TrackFrame& frame : life.frames) {
-    if (!frame.residual_px || !frame.inlier) continue;
+    if (!frame.residual_px || !frame.on_its_plane) continue;
     sum += *frame.residual_px * *frame.residual_px;
     ++count;
   }

@@ -261,7 +261,13 @@ void number_menu(const PanelContext& ui, const ResultRow& row) {
 void draw_row(const PanelContext& ui, const ResultRow& row, const RowPlace& place) {
   ImGui::SetCursorPosX(place.left);
   ImGui::BeginGroup();
+  const auto [value, uncertainty] = value_and_uncertainty(row.value);
+  const float width = ImGui::CalcTextSize(row.label.c_str()).x + place.gap / 2 +
+                      ImGui::CalcTextSize(value.c_str()).x;
+  const bool narrow = place.left + width > place.right - place.uncertainty;
+  if (narrow) ImGui::PushFont(font(Font::small));
   ImGui::TextUnformatted(row.label.c_str());
+  if (narrow) ImGui::PopFont();
   const bool fits = draw_value(row, place);
   ImGui::EndGroup();
   number_menu(ui, row);
@@ -317,7 +323,7 @@ void draw_verdict(const PanelContext& ui, const Initialization& result, const Ro
 void draw_state(const PanelInput& input, float right) {
   const bool stale =
       input.inspection() && !(input.inspection()->settings == input.state.document.settings);
-  const char* text = input.opening       ? "of the old recording"
+  const char* text = input.opening       ? input.inspection() ? "of the old recording" : ""
                      : input.worker.busy ? "computing"
                      : stale             ? "from earlier settings"
                                          : "";

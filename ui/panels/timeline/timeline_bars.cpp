@@ -254,7 +254,10 @@ std::vector<RulerTick> ruler_ticks(const TimeAxis& axis,
     const int frame = std::min(static_cast<int>(found), last);
     // Several times in a gap have the same next frame, the last one is closest to it.
     if (!ticks.empty() && ticks.back().frame == frame) ticks.pop_back();
-    ticks.push_back({frame, fmt::format("{:.{}f} s \u00b7 {}", at, decimals, frame)});
+    const bool round = std::abs(seconds(frame) - at) < 0.05 * std::pow(10, -decimals);
+    ticks.push_back(
+        {frame,
+         fmt::format("{:.{}f} s \u00b7 {}", seconds(frame), decimals + (round ? 0 : 1), frame)});
   }
   return ticks;
 }

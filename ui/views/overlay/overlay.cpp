@@ -127,18 +127,22 @@ void draw_legend_strip(const Area& area, const LegendRows& rows) {
   const auto& [list, rect] = area;
   const float s = overlay_scale(), size = font(Font::small)->FontSize;
   const float padding = 8 * s, line = size + 5 * s, sign_width = 18 * s, gap = 16 * s;
-  std::vector<Vector2d> places;  // relative to the strip's corner
+  constexpr double kMostHeight = 0.3;  // of the view
+  std::vector<Vector2d> places;        // relative to the strip's corner
   Vector2d at(padding, padding);
   for (const LegendRow& row : rows) {
     const double width = text_indent(row, sign_width) + text_width(Font::small, row.text);
-    if (at.x() > padding && at.x() + width + padding > rect.size.x()) at = {padding, at.y() + line};
+    if (at.x() > padding && at.x() + width + padding > rect.size.x()) {
+      if (at.y() + 2 * line > kMostHeight * rect.size.y()) break;
+      at = {padding, at.y() + line};
+    }
     places.push_back(at);
     at.x() += width + gap;
   }
   const double bottom = rect.min.y() + rect.size.y();
   const Vector2d corner(rect.min.x(), std::round(bottom - at.y() - size - padding));
   list.AddRectFilled(to_imgui(corner), area.high(), imgui_color(Role::background, kGround));
-  for (std::size_t i = 0; i < rows.size(); ++i)
+  for (std::size_t i = 0; i < places.size(); ++i)
     draw_legend_row(list, to_imgui(corner + places[i]), rows[i], {6 * s, sign_width});
 }
 

@@ -72,6 +72,8 @@ LegendRows legend_rows(const TrackColors& colors) {
   if (std::ranges::none_of(colors.values, [](const auto& value) { return value.has_value(); }))
     return {{Sign::disc, color_of(Role::text_dim), fmt::format("{} unknown", quantity)}};
   const std::string low = text_of(colors, colors.low);
+  if (low == text_of(colors, colors.high))
+    return {{Sign::disc, ramp_color(0.5), fmt::format("{} {}", quantity, low)}};
   return {{Sign::disc, ramp_color(0), fmt::format("{} {}", quantity, low)},
           {Sign::disc, ramp_color(1), text_of(colors, colors.high)}};
 }

@@ -99,6 +99,30 @@ TEST_F(TrackLifeTest, AcceptsATrackOnAnotherPlane) {
               HasSubstr("on plane 1: inlier of it in 29 of 29"));
 }
 
+TEST_F(TrackLifeTest, MeasuresATrackOnAnotherPlaneAgainstThatPlane) {
+  window->planes = {{{140, 141}, window->H_i1, window->inlier},
+                    {{2}, window->H_i1, window->inlier}};
+  auto result = std::make_shared<Initialization>(*inspection.initialization);
+  // Parallel to the main plane and as far as the track's first ray and second observation tell.
+  const Eigen::Vector3d ray = window->K.inverse() * window->points_px[0].col(2).homogeneous();
+  double best = 1e9;
+  Plane plane = result->plane;
+  for (double distance = 0.5; distance < 2; distance += 0.01) {
+    result->planes = {{0, result->plane}, {1, {result->plane.normal, distance}}};
+    inspection.initialization = result;
+    const double rms_px = rms_residual_px(track_life(inspection, 2)).value_or(1e9);
+    if (rms_px < best) plane.distance = distance;
+    best = std::min(best, rms_px);
+  }
+  EXPECT_LT(best, 1) << "noise of 0.4 px on each coordinate, although 5 px from the main plane";
+  result->planes[1].plane = plane;
+  const TrackLife life = track_life(inspection, 2);
+  const double depth = -plane.distance / plane.normal.dot(ray);
+  EXPECT_NEAR(*life.depth, depth, 1e-9);
+  EXPECT_FALSE(life.frames.back().inlier);
+  EXPECT_TRUE(life.frames.back().on_its_plane);
+}
+
 TEST_F(TrackLifeTest, EndsWhereTheTrackIsLost) {
   end_140();
   tracks->forward_backward_px.assign(30, Eigen::VectorXd::Constant(150, 0.1));

@@ -64,6 +64,16 @@ TEST(Ruler, LabelsTheFrameAfterAGapOnce) {
   EXPECT_EQ(texts, (std::vector<std::string>{"0 s \u00b7 0", "3 s \u00b7 3", "4 s \u00b7 33"}));
 }
 
+TEST(Ruler, TellsTheTimeOfTheFrame) {
+  std::vector<std::int64_t> times;
+  for (int i = 0; i < 10; ++i) times.push_back(i * 350'000'000LL);
+  std::vector<std::string> texts;
+  for (const RulerTick& tick : ruler_ticks({100, 1100, 10}, times, 300)) texts.push_back(tick.text);
+  EXPECT_EQ(texts,
+            (std::vector<std::string>{
+                "0 s \u00b7 0", "1.1 s \u00b7 3", "2.1 s \u00b7 6", "3.1 s \u00b7 9"}));
+}
+
 TEST(TimeSpan, ZoomsAroundTheMouse) {
   TimeSpan span;
   for (int i = 0; i < 20; ++i) span = zoomed(span, 20000, 0.25, 0.8);
