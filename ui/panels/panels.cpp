@@ -272,6 +272,18 @@ void colored_text(std::uint32_t rgb, const std::string& text) {
 
 void colored_text(Role role, const std::string& text) { colored_text(color_of(role), text); }
 
+void continue_line_at(float x) {
+  ImGui::SameLine();
+  ImGui::SetCursorPosX(std::round(x));
+}
+
+void fitted_text(const std::string& text, float right) {
+  const bool fits = ImGui::GetCursorPosX() + ImGui::CalcTextSize(text.c_str()).x <= right;
+  ImGui::PushFont(fits ? ImGui::GetFont() : font(Font::small));
+  ImGui::TextUnformatted(text.c_str());
+  ImGui::PopFont();
+}
+
 Role role_of(Severity severity, Role note) {
   if (severity == Severity::error) return Role::bad;
   return severity == Severity::warning ? Role::warning : note;

@@ -62,6 +62,10 @@ void sign_at_cursor(Sign sign, std::uint32_t rgb);
 
 void colored_text(std::uint32_t rgb, const std::string& text);
 void colored_text(Role role, const std::string& text);
+/// Continues the line at `x` [px from the panel's edge]; SameLine(x) counts from the group's.
+void continue_line_at(float x);
+/// Draws text, small if it would not end before `right` [px from the panel's edge].
+void fitted_text(const std::string& text, float right);
 void text_in(Font which, std::uint32_t rgb, const std::string& text);
 /// Breaks lines at `right` [px from the panel's left edge].
 void wrapped_text(const std::string& text, float right);

@@ -76,8 +76,8 @@ struct TrackFrame {
   /// result [raw px]; nullopt without a prediction.
   std::optional<double> residual_px = {};
   std::optional<double> forward_backward_px = {};  ///< nullopt if not measured
-  bool inlier = false;                             ///< of the leading plane
-  bool on_its_plane = false;                       ///< inlier of the plane that the track is on
+  bool inlier = false;                             ///< the track is an inlier of the leading plane
+  bool on_its_plane = false;                       ///< the same for the plane that the track is on
 };
 
 /// History of a track of a window.

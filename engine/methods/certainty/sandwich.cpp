@@ -218,21 +218,24 @@ Influences influences_of(const Sandwich& sandwich) {
 }
 
 Eigen::MatrixXd shrunk_covariance(const Eigen::MatrixXd& moves,
-                                  const Eigen::MatrixXd& independent,
-                                  std::span<const int> blocks) {
+                                  const Eigen::MatrixXd& independent) {
   const double share = shrinkage(moves, independent);
-  const Eigen::MatrixXd by_cluster = square_of(moves);
-  Eigen::MatrixXd shrunk = (1 - share) * by_cluster + share * independent;
+  return (1 - share) * square_of(moves) + share * independent;
+}
+
+Eigen::MatrixXd with_blocks_of(const Eigen::MatrixXd& blocks,
+                               std::span<const int> sizes,
+                               Eigen::MatrixXd covariance) {
   Index at = 0;
-  for (const int size : blocks) {
+  for (const int size : sizes) {
     const auto rows = Eigen::seqN(at, size);
-    const Eigen::MatrixXd F = power_of_positive(by_cluster(rows, rows), 0.5) *
-                              power_of_positive(shrunk(rows, rows), -0.5);
-    shrunk(rows, Eigen::all) = (F * shrunk(rows, Eigen::all)).eval();
-    shrunk(Eigen::all, rows) = (shrunk(Eigen::all, rows) * F.transpose()).eval();
+    const Eigen::MatrixXd F = power_of_positive(blocks(rows, rows), 0.5) *
+                              power_of_positive(covariance(rows, rows), -0.5);
+    covariance(rows, Eigen::all) = (F * covariance(rows, Eigen::all)).eval();
+    covariance(Eigen::all, rows) = (covariance(Eigen::all, rows) * F.transpose()).eval();
     at += size;
   }
-  return shrunk;
+  return covariance;
 }
 
 Spread spread_of(const Sandwich& sandwich, const Influences& all, double degrees_of_freedom) {

@@ -171,21 +171,30 @@ std::vector<SolutionMove> moves_by_lens(const Sandwich& sandwich, LensMoves move
   return moves;
 }
 
-Eigen::MatrixXd joint_covariance(const PlaneMotion& motion,
-                                 const Bread& bread,
-                                 const JointParts& parts) {
+Eigen::MatrixXd joint_covariance(const Sandwich& sandwich,
+                                 const Influences& influences,
+                                 double degrees_of_freedom,
+                                 std::span<const SolutionMove> of_image,
+                                 const SharedMatrix& shared) {
+  const PlaneMotion& motion = sandwich.solved.motion;
+  const Bread& bread = sandwich.bread;
   const Eigen::MatrixXd M = results_by_shared(motion, bread);
-  const auto [of_tracks, tracks] = moves_of_results(motion, M, parts.tracks);
-  const auto [of_others, others] = moves_of_results(motion, M, parts.others);
-  const SharedMatrix rest =
-      parts.shared - tracks * tracks.transpose() - others * others.transpose();
+  std::vector<SolutionMove> moves = moves_by_gyro_noise(sandwich);
+  moves.insert(moves.end(), of_image.begin(), of_image.end());
+  const auto [of_others, others] = moves_of_results(motion, M, moves);
+  const auto [of_tracks, tracks] =
+      moves_of_results(motion, M, moves_by_track(sandwich, influences, degrees_of_freedom));
+  const Spread observations = spread_by_observation(influences, degrees_of_freedom);
   std::vector<int> blocks(bread.frames.size() - 1, 3);
   if (bread.layout.gyro > 0) blocks.push_back(3);
   bread.layout.add_plane_sizes(blocks);
-  const Eigen::MatrixXd shrunk =
-      shrunk_covariance(of_tracks, spread_of_results(motion, M, parts.observations), blocks);
+  const SharedMatrix rest = shared - tracks * tracks.transpose() - others * others.transpose();
   // A decrease by errors that frames share would exceed what few tracks have in its direction.
-  return shrunk + square_of(of_others) + M * power_of_positive(rest, 1) * M.transpose();
+  const Eigen::MatrixXd shrunk =
+      shrunk_covariance(of_tracks, spread_of_results(motion, M, observations)) +
+      M * power_of_positive(rest, 1) * M.transpose();
+  return with_blocks_of(square_of(of_tracks) + M * rest * M.transpose(), blocks, shrunk) +
+         square_of(of_others);
 }
 
 }  // namespace gpo

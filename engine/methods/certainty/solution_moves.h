@@ -26,18 +26,14 @@ std::vector<SolutionMove> moves_by_lens(const Sandwich& sandwich, LensMoves move
 /// eq. 14f).
 void add_gyro_noise(const Sandwich& sandwich, Spread& spread);
 
-struct JointParts {
-  std::span<const SolutionMove> tracks;  ///< `moves_by_track`
-  const Spread& observations;            ///< `spread_by_observation`
-  std::span<const SolutionMove> others;  ///< by the gyroscope and the lens
-  const SharedMatrix& shared;            ///< covariance of the shared unknowns by all errors
-};
-
 /// Returns the joint covariance of all camera centers but the first, the gyroscope bias if it is a
 /// shared unknown, and the planes (`Uncertainty::joint_covariance`): the shrunk sum over tracks,
-/// the sum over all other moves, and the rest of the shared unknowns' covariance.
-Eigen::MatrixXd joint_covariance(const PlaneMotion& motion,
-                                 const Bread& bread,
-                                 const JointParts& parts);
+/// the sums over steps of the gyroscope's walk and over `of_image`, the moves by lens and readout,
+/// and the rest of `shared`, the covariance of the shared unknowns by all errors.
+Eigen::MatrixXd joint_covariance(const Sandwich& sandwich,
+                                 const Influences& influences,
+                                 double degrees_of_freedom,
+                                 std::span<const SolutionMove> of_image,
+                                 const SharedMatrix& shared);
 
 }  // namespace gpo

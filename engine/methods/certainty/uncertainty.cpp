@@ -10,7 +10,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 #include <set>
 #include <utility>
 #include <vector>
@@ -218,15 +217,8 @@ std::optional<Uncertainty> uncertainty_of(const SolvedPlanes& solved,
   result.center_covariances = std::move(all.centers);
   for (const double v : all.distance_ratios) result.distance_ratio_sigmas.push_back(std::sqrt(v));
   if (centers == Centers::jointly) {
-    std::vector<SolutionMove> others = moves_by_gyro_noise(sandwich);
-    std::ranges::move(moves_of_image, std::back_inserter(others));
     result.joint_covariance =
-        joint_covariance(motion,
-                         bread,
-                         {.tracks = moves_by_track(sandwich, influences, degrees_of_freedom),
-                          .observations = spread_by_observation(influences, degrees_of_freedom),
-                          .others = others,
-                          .shared = spread.shared});
+        joint_covariance(sandwich, influences, degrees_of_freedom, moves_of_image, spread.shared);
     result.joint_bias_rows = bread.layout.gyro > 0 ? 3 : 0;
   }
   if (model == RotationModel::bias)

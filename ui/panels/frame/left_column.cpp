@@ -204,12 +204,6 @@ struct RowPlace {
   float uncertainty = 0;  ///< width of the column at the right
 };
 
-/// Not SameLine(x), which counts from the group's left edge.
-void continue_line_at(float x) {
-  ImGui::SameLine();
-  ImGui::SetCursorPosX(std::round(x));
-}
-
 /// Draws a small dim note from `left` on. Returns false if it does not fit before `right`.
 bool draw_note_after(const std::string& note, float left, float right) {
   ImGui::PushFont(font(Font::small));
@@ -261,13 +255,8 @@ void number_menu(const PanelContext& ui, const ResultRow& row) {
 void draw_row(const PanelContext& ui, const ResultRow& row, const RowPlace& place) {
   ImGui::SetCursorPosX(place.left);
   ImGui::BeginGroup();
-  const auto [value, uncertainty] = value_and_uncertainty(row.value);
-  const float width = ImGui::CalcTextSize(row.label.c_str()).x + place.gap / 2 +
-                      ImGui::CalcTextSize(value.c_str()).x;
-  const bool narrow = place.left + width > place.right - place.uncertainty;
-  if (narrow) ImGui::PushFont(font(Font::small));
-  ImGui::TextUnformatted(row.label.c_str());
-  if (narrow) ImGui::PopFont();
+  const std::string value = value_and_uncertainty(row.value).first + " ";
+  fitted_text(row.label, place.right - place.uncertainty - ImGui::CalcTextSize(value.c_str()).x);
   const bool fits = draw_value(row, place);
   ImGui::EndGroup();
   number_menu(ui, row);

@@ -127,7 +127,7 @@ void draw_legend_strip(const Area& area, const LegendRows& rows) {
   const auto& [list, rect] = area;
   const float s = overlay_scale(), size = font(Font::small)->FontSize;
   const float padding = 8 * s, line = size + 5 * s, sign_width = 18 * s, gap = 16 * s;
-  constexpr double kMostHeight = 0.3;  // of the view
+  constexpr double kMostHeight = 0.3;  // share of the view's height
   std::vector<Vector2d> places;        // relative to the strip's corner
   Vector2d at(padding, padding);
   for (const LegendRow& row : rows) {

@@ -102,6 +102,7 @@ TEST_F(TrackLifeTest, AcceptsATrackOnAnotherPlane) {
 TEST_F(TrackLifeTest, MeasuresATrackOnAnotherPlaneAgainstThatPlane) {
   window->planes = {{{140, 141}, window->H_i1, window->inlier},
                     {{2}, window->H_i1, window->inlier}};
+  for (auto& inlier : window->planes[1].inlier) inlier[2] = true;
   auto result = std::make_shared<Initialization>(*inspection.initialization);
   // Parallel to the main plane and as far as the track's first ray and second observation tell.
   const Eigen::Vector3d ray = window->K.inverse() * window->points_px[0].col(2).homogeneous();

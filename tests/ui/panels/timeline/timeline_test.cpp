@@ -66,12 +66,12 @@ TEST(Ruler, LabelsTheFrameAfterAGapOnce) {
 
 TEST(Ruler, TellsTheTimeOfTheFrame) {
   std::vector<std::int64_t> times;
-  for (int i = 0; i < 10; ++i) times.push_back(i * 350'000'000LL);
+  for (int i = 0; i < 10; ++i) times.push_back(i * 360'000'000LL);
   std::vector<std::string> texts;
-  for (const RulerTick& tick : ruler_ticks({100, 1100, 10}, times, 300)) texts.push_back(tick.text);
+  for (const RulerTick& tick : ruler_ticks({100, 1100, 10}, times, 250)) texts.push_back(tick.text);
   EXPECT_EQ(texts,
             (std::vector<std::string>{
-                "0 s \u00b7 0", "1.1 s \u00b7 3", "2.1 s \u00b7 6", "3.1 s \u00b7 9"}));
+                "0 s \u00b7 0", "1.1 s \u00b7 3", "2.2 s \u00b7 6", "3.2 s \u00b7 9"}));
 }
 
 TEST(TimeSpan, ZoomsAroundTheMouse) {
