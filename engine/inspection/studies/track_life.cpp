@@ -41,14 +41,6 @@ Eigen::Matrix3d homography_of(const Window& window, const Pose& pose, const Plan
          (Eigen::Matrix3d::Identity() - tau * plane.normal.transpose()) * window.K.inverse();
 }
 
-/// Returns the depth at which a track's first ray meets its plane.
-std::optional<double> depth_on(const Plane& plane, const Inspection& inspection, int column) {
-  const Window& window = *inspection.window;
-  const Eigen::Vector3d ray = window.K.inverse() * window.points_px[0].col(column).homogeneous();
-  const double depth = -plane.distance / plane.normal.dot(ray);
-  return std::isfinite(depth) && depth > 0 ? std::optional(depth) : std::nullopt;
-}
-
 /// Reads the tracks, not the window, which does not have the excluded ones.
 TrackFrame frame_of(const Inspection& inspection, int frame, int column, const TrackPlane& on) {
   const Tracks& tracks = *inspection.tracks;
@@ -216,7 +208,12 @@ TrackLife track_life(const Inspection& inspection, int column) {
   }
   for (const MapPoint& point : inspection.initialization->points)
     if (point.track == column) life.depth = point.position.z();
-  if (on.number != inspection.window->leader) life.depth = depth_on(*on.plane, inspection, column);
+  const Window& window = *inspection.window;
+  if (on.number != window.leader) {
+    const Eigen::Vector2d first_px = window.points_px[0].col(column);
+    const auto point = intersect(*on.plane, Pose{}, window.K.inverse() * first_px.homogeneous());
+    life.depth = point ? std::optional(point->z()) : std::nullopt;
+  }
   life.verdict = verdict_of(inspection, life);
   if (const std::string loss = loss_of(tracks, column); !loss.empty()) life.verdict += "; " + loss;
   return life;

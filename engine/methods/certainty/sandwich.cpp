@@ -54,7 +54,8 @@ double shrinkage(const Eigen::MatrixXd& moves, const Eigen::MatrixXd& independen
   const double chance = white.colwise().squaredNorm().squaredNorm() -
                         sum.squaredNorm() / static_cast<double>(moves.cols());
   sum.diagonal().array() -= sum.diagonal().mean();
-  return std::clamp(chance / sum.squaredNorm(), 0.0, 1.0);
+  const double deviation = sum.squaredNorm();
+  return deviation > 0 ? std::clamp(chance / deviation, 0.0, 1.0) : 1;
 }
 
 }  // namespace
@@ -218,9 +219,10 @@ Influences influences_of(const Sandwich& sandwich) {
 }
 
 Eigen::MatrixXd shrunk_covariance(const Eigen::MatrixXd& moves,
+                                  const Eigen::MatrixXd& square,
                                   const Eigen::MatrixXd& independent) {
   const double share = shrinkage(moves, independent);
-  return (1 - share) * square_of(moves) + share * independent;
+  return (1 - share) * square + share * independent;
 }
 
 Eigen::MatrixXd with_blocks_of(const Eigen::MatrixXd& blocks,

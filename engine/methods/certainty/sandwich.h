@@ -94,10 +94,12 @@ Eigen::MatrixXd power_of_positive(const Eigen::MatrixXd& A, double power);
 /// Returns the sum over all columns m of m m^T.
 Eigen::MatrixXd square_of(const Eigen::MatrixXd& moves);
 
-/// Returns `square_of` the moves, shrunk toward `independent`, the covariance for independent
-/// errors: of few moves, it knows nothing about most directions, and its inverse would claim that
-/// these are exact (engine/method.md, eq. 14g).
-Eigen::MatrixXd shrunk_covariance(const Eigen::MatrixXd& moves, const Eigen::MatrixXd& independent);
+/// Returns `square`, the square of the moves, shrunk toward `independent`, the covariance for
+/// independent errors: of few moves, it knows nothing about most directions, and its inverse would
+/// claim that these are exact (engine/method.md, eq. 14g).
+Eigen::MatrixXd shrunk_covariance(const Eigen::MatrixXd& moves,
+                                  const Eigen::MatrixXd& square,
+                                  const Eigen::MatrixXd& independent);
 
 /// Returns a covariance with the correlations of `covariance` between the diagonal blocks of
 /// `blocks`, which have these sizes.

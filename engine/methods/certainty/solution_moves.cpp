@@ -188,13 +188,13 @@ Eigen::MatrixXd joint_covariance(const Sandwich& sandwich,
   std::vector<int> blocks(bread.frames.size() - 1, 3);
   if (bread.layout.gyro > 0) blocks.push_back(3);
   bread.layout.add_plane_sizes(blocks);
+  const Eigen::MatrixXd square = square_of(of_tracks);
   const SharedMatrix rest = shared - tracks * tracks.transpose() - others * others.transpose();
   // A decrease by errors that frames share would exceed what few tracks have in its direction.
   const Eigen::MatrixXd shrunk =
-      shrunk_covariance(of_tracks, spread_of_results(motion, M, observations)) +
+      shrunk_covariance(of_tracks, square, spread_of_results(motion, M, observations)) +
       M * power_of_positive(rest, 1) * M.transpose();
-  return with_blocks_of(square_of(of_tracks) + M * rest * M.transpose(), blocks, shrunk) +
-         square_of(of_others);
+  return with_blocks_of(square + M * rest * M.transpose(), blocks, shrunk) + square_of(of_others);
 }
 
 }  // namespace gpo

@@ -249,9 +249,11 @@ Uncertainty uncertainty_of(const Model& model,
   const double wider = std::max({1.0, independent / of_normal, neighbors_ratio(model, moves)});
   const MatrixXd by_lens = moves_by_lens(layout, at.A, gain);
   const MatrixXd of_noise = variance * gain(wanted, Eigen::all) - of_priors;
-  MatrixXd covariance = of_priors + wider * with_blocks_of(square_of(moves),
-                                                           blocks_of_results(layout),
-                                                           shrunk_covariance(moves, of_noise));
+  const MatrixXd square = square_of(moves);
+  MatrixXd covariance =
+      of_priors + wider * with_blocks_of(square,
+                                         blocks_of_results(layout),
+                                         shrunk_covariance(moves, square, of_noise));
   if (!layout.typical_lens) covariance += by_lens * by_lens.transpose();
 
   Uncertainty result;

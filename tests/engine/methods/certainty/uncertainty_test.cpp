@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/methods/certainty/uncertainty.h"
 
+#include "engine/methods/certainty/sandwich.h"
 #include "engine/methods/certainty/shared_information.h"
 #include "engine/methods/methods.h"
 #include "engine/window/window.h"
@@ -388,6 +389,11 @@ TEST(JointCenters, HaveErrorsOfTheirInverseWithFewTracks) {
       EXPECT_LT(sum / kWindows, 1.7) << method << ' ' << points;
     }
   }
+}
+
+TEST(ShrunkCovariance, IsZeroWithoutErrors) {
+  const Eigen::MatrixXd zero = Eigen::MatrixXd::Zero(6, 6);
+  EXPECT_EQ(shrunk_covariance(zero.leftCols(4), zero, zero), zero);
 }
 
 }  // namespace
