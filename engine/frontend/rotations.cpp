@@ -192,16 +192,25 @@ Rotations sensitive_gyro_rotations(const Gyroscope& gyroscope,
   const auto rate = [&](std::int64_t t_ns) -> Vector3d {
     return sample_at(gyroscope, t_ns).rate_rad_s - gyroscope.bias_rad_s;
   };
+  const auto acceleration = [&](std::int64_t t_ns) -> Vector3d {  // [rad/s^2]
+    constexpr std::int64_t kHalf_ns = 10'000'000;
+    const std::int64_t from_ns = std::max(t_ns - kHalf_ns, gyroscope.timestamps_ns.front());
+    const std::int64_t to_ns = std::min(t_ns + kHalf_ns, gyroscope.timestamps_ns.back());
+    return (rate(to_ns) - rate(from_ns)) / (1e-9 * static_cast<double>(to_ns - from_ns));
+  };
   const Vector3d first_rate = rate(times_ns.front());
+  const Vector3d first_acceleration = acceleration(times_ns.front());
   Rotations rotations{.model = RotationModel::bias};
   const double held_rad_s = held_bias_sigma_rad_s(gyroscope);
   GyroSensitivity gyro{.bias_rad_s = gyroscope.bias_rad_s,
                        .prior_rad_s = gyroscope.bias_rad_s,
                        .prior_sigma_rad_s = gyroscope.bias_sigma_rad_s,
                        .bias_covariance = held_rad_s * held_rad_s * Matrix3d::Identity(),
+                       .time_offset_sigma_s = kTimeOffsetSigma_s,
                        .noise_density = gyroscope.noise_density,
                        .d_bias = {},
-                       .d_offset = {}};
+                       .d_offset = {},
+                       .d2_offset = {}};
   // Rotation since the first frame: R_first_now(bias + db) ~ R_first_now exp(d_bias db).
   Matrix3d R_first_now = Matrix3d::Identity(), d_bias = Matrix3d::Zero();
   // Forster et al., "On-Manifold Preintegration", eq. 44 with its sum as a recursion.
@@ -216,8 +225,13 @@ Rotations sensitive_gyro_rotations(const Gyroscope& gyroscope,
     rotations.R_wc.push_back(R_cg * R_first_now * R_cg.transpose());
     gyro.d_bias.push_back(R_cg * d_bias);
     // A later clock drops the rotation at the first frame and adds that at the last one:
-    // exp(-w_1 dt) R exp(w_i dt) = R exp((w_i - R^T w_1) dt), all in the gyroscope's axes.
-    gyro.d_offset.push_back(R_cg * (rate(times_ns[i]) - R_first_now.transpose() * first_rate));
+    // exp(-w_1 dt) R exp(w_i dt) = R exp((w_i - R^T w_1) dt), all in the gyroscope's axes; to
+    // second order w dt + w' dt^2 / 2 takes the place of w dt, and half of the commutator is added.
+    const Vector3d now = rate(times_ns[i]);
+    const Matrix3d R_now_first = R_first_now.transpose();
+    gyro.d_offset.push_back(R_cg * (now - R_now_first * first_rate));
+    gyro.d2_offset.push_back(R_cg * (acceleration(times_ns[i]) - R_now_first * first_acceleration -
+                                     (R_now_first * first_rate).cross(now)));
   }
   rotations.gyro = std::move(gyro);
   return rotations;

@@ -307,7 +307,7 @@ UncertainPoses uncertain_poses(const Window& window, const Initialization& resul
   poses.time_offset_s = result.time_offset_s.value_or(0);
   if (!result.uncertainty || result.uncertainty->joint_covariance.size() == 0) return poses;
   const Uncertainty& u = *result.uncertainty;
-  for (int k = 0; k < u.joint_bias_rows; ++k) rows.push_back(3 * (all - 1) + k);
+  for (int k = 0; k < std::min(3, u.joint_bias_rows); ++k) rows.push_back(3 * (all - 1) + k);
   poses.covariance = u.joint_covariance(rows, rows);
   poses.joint_rows = std::move(rows);
   return poses;

@@ -81,11 +81,9 @@ PlaneSolution solve_once(const Task& task,
                          const PlaneMotion& start,
                          RotationUnknowns rotations,
                          int most_steps = kMostSteps) {
-  const bool offset = task.options.time_offset && rotations.model == RotationModel::bias;
   const PlaneTask plane_task{task.window,
                              observations,
                              {.rotations = rotations.model,
-                              .time_offset = offset,
                               .sigma_px = task.sigma_px,
                               .gyro_noise = rotations.gyro_noise}};
   return task.options.solver == Solver::ceres
@@ -316,7 +314,6 @@ std::optional<joint::Solution> solve_jointly(const Task& task, const Fit& fit) {
   const double rows = 2 * std::abs(task.window.readout_direction.dot(center_px)) + 1;
   joint::Options options{.rotations = fit.rotations.model,
                          .gyro_noise = fit.rotations.gyro_noise,
-                         .time_offset = task.options.time_offset,
                          .row_delay = std::nullopt,
                          .huber = task.options.loss == Loss::huber};
   if (task.options.shutter != Shutter::global) options.row_delay = {0, kReadoutSigma_s / rows};
@@ -356,6 +353,8 @@ void take(const joint::Solution& joint, const Window& window, Fit& fit) {
 Initialization initialize_gpo_joint(const Window& window,
                                     const MethodOptions& options,
                                     const Watch& watch) {
+  if (!options.time_offset && gyro_unknowns(window, window.rotations) > 3)
+    return initialize_gpo_joint(with_exact_clock(window), options, watch);
   if (auto reason = reason_not_to_try(window)) return failed(*reason);
   const Task task{window, options, homography_error_px(window) / kMedianOfRayleigh, watch};
   if (options.shutter == Shutter::known && window.row_delay && !task.latent())
@@ -367,7 +366,9 @@ Initialization initialize_gpo_joint(const Window& window,
   solver.milliseconds += effort.milliseconds;
   if (solver.termination != Termination::convergence) return not_converged(solver);
   fit.solution.motion.bias_rad_s = bias_rad_s;
-  const auto joint = task.latent(fit.row_delay_s) ? solve_jointly(task, fit) : std::nullopt;
+  auto joint = task.latent(fit.row_delay_s) ? solve_jointly(task, fit) : std::nullopt;
+  const bool chosen = options.error == ErrorModel::automatic;
+  if (chosen && joint && joint->solver.termination != Termination::convergence) joint.reset();
   if (options.error == ErrorModel::latent && !joint)
     return watch.stop_requested() ? stopped_early()
                                   : failed(
@@ -389,7 +390,7 @@ Initialization initialize_gpo_joint(const Window& window,
   if (joint) add_bends({fit.window, fit.observations, motion}, *result.uncertainty);
   set_plane_uncertainties(result);
   if (window.rotations == RotationModel::bias) result.bias_rad_s = bias_rad_s;
-  if (fit.rotations.model == RotationModel::bias && options.time_offset)
+  if (gyro_unknowns(window, fit.rotations.model) > 3)
     result.time_offset_s = fit.solution.motion.time_offset_s;
   if (fit.row_delay_s != 0) result.row_delay_s = fit.row_delay_s;
   return result;

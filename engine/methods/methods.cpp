@@ -31,7 +31,7 @@ void add_planes(const Window& window, Initialization& result) {
 }
 
 /// Completes the reason of a verdict: by the uncertainty with an exact lens, or if it is weak by
-/// the main cause, if that is the lens, the surface or the camera model.
+/// the main cause, if that is the lens, the clock, the surface or the camera model.
 void explain(const Uncertainty& u, Lens lens, Verdict& verdict) {
   constexpr double kMainShare = 0.7;  // about half of the variance
   const double sigma_deg = normal_sigma_deg(u, lens);
@@ -48,6 +48,10 @@ void explain(const Uncertainty& u, Lens lens, Verdict& verdict) {
         "exact lens): calibrate the camera",
         sigma_deg,
         u.normal_sigma_deg);
+  else if (is_main(u.clock_sigma_deg))
+    verdict.reason = fmt::format(
+        "the clock of the gyroscope is about {:+.0f} ms off: use gpo_joint, or calibrate it",
+        1e3 * *u.late_s);
   else if (is_main(u.bend_sigma_deg))
     verdict.reason =
         fmt::format("uneven surface or lens error: the normal varies by {:.2f} deg over the plane",

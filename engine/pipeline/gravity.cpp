@@ -21,13 +21,11 @@ using Eigen::VectorXd;
 
 struct JointRows {
   Index frames;
-  Index bias_rows;
+  Index gyro;
 
   static Index of_center(Index frame) { return 3 * (frame - 1); }
-  Index of_bias() const { return 3 * (frames - 1); }
-  Index of_plane(int plane) const {
-    return of_bias() + bias_rows + UnknownsLayout::of_plane(plane);
-  }
+  Index of_gyro() const { return 3 * (frames - 1); }
+  Index of_plane(int plane) const { return of_gyro() + gyro + UnknownsLayout::of_plane(plane); }
 };
 
 /// Effect of the accelerations on all rows.
@@ -85,8 +83,11 @@ void lower_motion(const JointRows& rows, const MatrixXd& less, Initialization& r
     const double variance = std::pow(u.distance_ratio_sigmas[i], 2) - ratio;
     u.distance_ratio_sigmas[i] = std::sqrt(std::max(0.0, variance));
   }
-  if (u.bias_covariance && rows.bias_rows == 3)
-    *u.bias_covariance -= less.block<3, 3>(rows.of_bias(), rows.of_bias());
+  const Index gyro = rows.of_gyro();
+  if (u.bias_covariance && rows.gyro > 0) *u.bias_covariance -= less.block<3, 3>(gyro, gyro);
+  if (u.time_offset_sigma_s && rows.gyro > 3)
+    *u.time_offset_sigma_s =
+        std::sqrt(std::max(0.0, std::pow(*u.time_offset_sigma_s, 2) - less(gyro + 3, gyro + 3)));
   u.joint_covariance -= less;
   u.pose_covariance.resize(0, 0);  // no longer valid: the rotations move
 }
@@ -98,11 +99,13 @@ void move(const Window& window, const JointRows& rows, const VectorXd& step, Ini
   for (Index i = 1; i < rows.frames; ++i) {
     Pose& camera = r.cameras[i];
     camera.p_wc += step.segment<3>(JointRows::of_center(i));
-    if (rows.bias_rows == 0 || !window.gyro) continue;
-    const GyroColumns by_bias = gyro_columns(window, before, static_cast<int>(i), 3);
-    camera.R_wc = camera.R_wc * so3_exp(by_bias * step.segment<3>(rows.of_bias()));
+    if (rows.gyro == 0 || !window.gyro) continue;
+    const int gyro = static_cast<int>(rows.gyro);
+    const GyroColumns by_gyro = gyro_columns(window, before, static_cast<int>(i), gyro);
+    camera.R_wc = camera.R_wc * so3_exp(by_gyro * step.segment(rows.of_gyro(), gyro));
   }
-  if (r.bias_rad_s && rows.bias_rows == 3) *r.bias_rad_s += step.segment<3>(rows.of_bias());
+  if (r.bias_rad_s && rows.gyro > 0) *r.bias_rad_s += step.segment<3>(rows.of_gyro());
+  if (r.time_offset_s && rows.gyro > 3) *r.time_offset_s += step(rows.of_gyro() + 3);
   r.plane = moved_plane(r.plane, step.segment(rows.of_plane(0), 2));
   if (!r.planes.empty()) r.planes.front().plane = r.plane;
   for (std::size_t k = 1; k < r.planes.size(); ++k)

@@ -35,6 +35,10 @@ struct Gyroscope {
 /// phone's gyroscope over ten kelvins (data sheet of LSM6DSO: 0.01 deg/s per kelvin).
 inline constexpr double kStatedBiasSigma_rad_s = 0.002;
 
+/// Standard deviation of the offset between the clocks of camera and gyroscope [s]. Logs of phones
+/// are late by up to a frame, and a calibration holds for one recording.
+inline constexpr double kTimeOffsetSigma_s = 0.02;
+
 /// Returns the standard deviation of `bias_rad_s` where rotations are held, each axis. A bias that
 /// is stated without one has `kStatedBiasSigma_rad_s`.
 double held_bias_sigma_rad_s(const Gyroscope& gyroscope);

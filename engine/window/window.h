@@ -42,17 +42,20 @@ struct ChoiceKeys<RotationModel> {
   static constexpr std::array keys{"known", "bias", "free"};
 };
 
-/// Derivatives of integrated gyroscope rotations, to first order:
-/// R_wc(bias + db, offset + dt) ~ R_wc exp(d_bias db + d_offset dt).
+/// Derivatives of integrated gyroscope rotations:
+/// R_wc(bias + db, offset + dt) ~ R_wc exp(d_bias db + d_offset dt + d2_offset dt^2 / 2).
 struct GyroSensitivity {
   Eigen::Vector3d bias_rad_s = Eigen::Vector3d::Zero();   ///< used to integrate R_wc
   Eigen::Vector3d prior_rad_s = Eigen::Vector3d::Zero();  ///< bias from the sensor's own data
   double prior_sigma_rad_s = 0.1;  ///< standard deviation of `prior_rad_s`, each axis
   /// Covariance of `bias_rad_s`, before the tracks are seen; for methods that hold the rotations.
   Eigen::Matrix3d bias_covariance = 0.01 * Eigen::Matrix3d::Identity();
-  double noise_density = 0;               ///< white noise of the rates [rad/s/sqrt(Hz)]
-  std::vector<Eigen::Matrix3d> d_bias;    ///< one per frame, in its camera axes [s]
-  std::vector<Eigen::Vector3d> d_offset;  ///< one per frame, in its camera axes [rad/s]
+  /// Standard deviation of the offset between the clocks of camera and gyroscope; 0: exact.
+  double time_offset_sigma_s = 0;
+  double noise_density = 0;                ///< white noise of the rates [rad/s/sqrt(Hz)]
+  std::vector<Eigen::Matrix3d> d_bias;     ///< one per frame, in its camera axes [s]
+  std::vector<Eigen::Vector3d> d_offset;   ///< one per frame, in its camera axes [rad/s]
+  std::vector<Eigen::Vector3d> d2_offset;  ///< the same [rad/s^2]
 };
 
 /// Prior of the time from one row of an undistorted image to the next [s]; from one column to the

@@ -116,7 +116,9 @@ json room_result(const std::string& name, int start, int frames = 20) {
 TEST(RealRooms, FloorOfEurocIsFoundFirst) {
   SKIP_WITHOUT(shared("euroc-room"));
   std::vector<double> normal_deg, path_m;
-  for (const int start : {0, 5, 10, 15, 20, 30, 35, 40}) {
+  double bias_squares = 0, clock_squares = 0;
+  const auto starts = {0, 5, 10, 15, 20, 30, 35, 40};
+  for (const int start : starts) {
     const json result = room_result("euroc-room", start);
     ASSERT_EQ(result["status"], "ok") << start;
     normal_deg.push_back(result["metrics"]["pne_deg"]);
@@ -125,8 +127,17 @@ TEST(RealRooms, FloorOfEurocIsFoundFirst) {
     EXPECT_GE(result["planes"].size(), 2) << start;
     const std::array<double, 3> bias = result["bias_rad_s"];
     const std::array known{-0.0022, 0.0208, 0.0765};  // from the publishers of the data set
-    for (int k = 0; k < 3; ++k) EXPECT_NEAR(bias[k], known[k], 0.01) << start;
+    const json& covariance = result["uncertainty"]["bias_covariance_rad2_s2"];
+    for (int k = 0; k < 3; ++k) {
+      EXPECT_NEAR(bias[k], known[k], 0.01) << start;
+      bias_squares += std::pow(bias[k] - known[k], 2) / covariance[k][k].get<double>();
+    }
+    const double sigma_s = result["time_offset_sigma_s"];
+    EXPECT_LT(sigma_s, 0.003) << start;
+    clock_squares += std::pow(result["time_offset_s"].get<double>() / sigma_s, 2);
   }
+  EXPECT_LT(bias_squares / static_cast<double>(3 * starts.size()), 2);
+  EXPECT_LT(clock_squares / static_cast<double>(starts.size()), 3);  // the clocks are one
   EXPECT_LT(median(normal_deg), 1.5);
   EXPECT_LT(median(path_m), 0.003);
 }
@@ -248,10 +259,11 @@ TEST_P(RenderedRooms, LateClockIsEstimated) {
     }
     return late;
   };
-  const json result =
-      result_from(changed_room("mav0/imu0/data.csv", delay), GetParam(), "--time-offset");
+  const json result = result_from(changed_room("mav0/imu0/data.csv", delay), GetParam());
   expect_accurate(result);
   EXPECT_NEAR(result["time_offset_s"], kClock_s, 0.001);
+  EXPECT_LT(std::abs(result["time_offset_s"].get<double>() - kClock_s),
+            3 * result["time_offset_sigma_s"].get<double>());
 }
 
 constexpr int kMostFrames = 40;

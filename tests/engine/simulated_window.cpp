@@ -107,6 +107,7 @@ void give_gyroscope(const SimulationOptions& options,
                     const Vector3d& wobble_rad,
                     Simulation& simulation) {
   simulation.bias_rad_s = bias_of(options);
+  simulation.time_offset_s = options.gyro_offset_s;
   Window& window = simulation.window;
   Rotations rotations = sensitive_gyro_rotations(
       gyroscope_of(options, wobble_rad, simulation.bias_rad_s), window.timestamps_ns);

@@ -67,6 +67,7 @@ struct Simulation {
   std::vector<Pose> cameras;
   std::vector<bool> on_plane;
   Eigen::Vector3d bias_rad_s = Eigen::Vector3d::Zero();  ///< true, in the gyroscope's axes
+  double time_offset_s = 0;                              ///< true, of the gyroscope's clock
 };
 
 Simulation simulate(const SimulationOptions& options);

@@ -202,10 +202,10 @@ ordered_json uncertainty_json(const Initialization& result) {
   for (std::size_t i = 0; i < result.cameras.size(); ++i)
     ratios.push_back({{"value", 1 + result.plane.normal.dot(result.cameras[i].p_wc)},
                       {"sigma", u.distance_ratio_sigmas[i]}});
-  const auto square = [](double x) { return x * x; };
-  const double other_squares = square(u.lens_sigma_deg.value_or(0)) +
-                               square(u.neighbors_sigma_deg.value_or(0)) +
-                               square(u.bend_sigma_deg.value_or(0));
+  double noise_square = std::pow(u.normal_sigma_deg, 2);
+  for (const auto& part_deg :
+       {u.lens_sigma_deg, u.neighbors_sigma_deg, u.bend_sigma_deg, u.clock_sigma_deg})
+    noise_square -= std::pow(part_deg.value_or(0), 2);
   ordered_json json = {
       {"of", u.own ? "method" : "window"},
       {"rotations", to_string(u.rotations)},
@@ -215,9 +215,10 @@ ordered_json uncertainty_json(const Initialization& result) {
       {"normal_sigma_deg", u.normal_sigma_deg},
       {"typical_lens_sigma_deg", optional_json(u.typical_lens_sigma_deg)},
       {"parts_deg",
-       {{"noise", std::sqrt(std::max(0.0, square(u.normal_sigma_deg) - other_squares))},
+       {{"noise", std::sqrt(std::max(0.0, noise_square))},
         {"neighbors", optional_json(u.neighbors_sigma_deg)},
         {"bend", optional_json(u.bend_sigma_deg)},
+        {"clock", optional_json(u.clock_sigma_deg)},
         {"lens", optional_json(u.lens_sigma_deg)}}},
       {"normal_covariance_rad2", matrix_json(u.normal_covariance)},
       {"distance_ratios", ratios},
@@ -282,10 +283,11 @@ ordered_json camera_json(const Recording& recording) {
 /// Adds what the method estimates of gyroscope and shutter.
 void add_sensors(const Initialization& result, ordered_json& json) {
   if (result.bias_rad_s) json["bias_rad_s"] = vector_json(*result.bias_rad_s);
+  const Uncertainty u = result.uncertainty.value_or(Uncertainty{});
   if (result.time_offset_s) json["time_offset_s"] = *result.time_offset_s;
+  if (u.time_offset_sigma_s) json["time_offset_sigma_s"] = *u.time_offset_sigma_s;
   if (result.row_delay_s) json["row_delay_s"] = *result.row_delay_s;
-  if (result.row_delay_s && result.uncertainty && result.uncertainty->row_delay_sigma_s)
-    json["row_delay_sigma_s"] = *result.uncertainty->row_delay_sigma_s;
+  if (result.row_delay_s && u.row_delay_sigma_s) json["row_delay_sigma_s"] = *u.row_delay_sigma_s;
 }
 
 }  // namespace

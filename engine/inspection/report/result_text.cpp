@@ -74,12 +74,21 @@ std::string uncertainty_text(const Initialization& result, CameraSource source) 
   std::string text;
   if (result.uncertainty) text += row("uncertainty", normal_text(*result.uncertainty, source));
   if (result.bias_rad_s) text += row("bias", "{:.5f} rad/s", fmt::join(*result.bias_rad_s, " "));
-  if (result.time_offset_s) text += row("time offset", "{:.2f} ms", 1e3 * *result.time_offset_s);
-  if (!result.row_delay_s) return text;
-  std::string sigma;
-  if (result.uncertainty && result.uncertainty->row_delay_sigma_s)
-    sigma = fmt::format(" +- {:.2f}", 1e6 * *result.uncertainty->row_delay_sigma_s);
-  return text + row("shutter", "rolling, row delay {:.2f}{} us", 1e6 * *result.row_delay_s, sigma);
+  const Uncertainty u = result.uncertainty.value_or(Uncertainty{});
+  const auto sigma = [](double factor, std::optional<double> value) {
+    return value ? fmt::format(" +- {:.2f}", factor * *value) : "";
+  };
+  if (result.time_offset_s)
+    text += row("time offset",
+                "{:.2f}{} ms",
+                1e3 * *result.time_offset_s,
+                sigma(1e3, u.time_offset_sigma_s));
+  if (result.row_delay_s)
+    text += row("shutter",
+                "rolling, row delay {:.2f}{} us",
+                1e6 * *result.row_delay_s,
+                sigma(1e6, u.row_delay_sigma_s));
+  return text;
 }
 
 std::string planes_text(const Inspection& inspection) {

@@ -8,6 +8,7 @@
 #include "engine/methods/plane/plane_weights.h"
 
 #include <algorithm>
+#include <cmath>
 #include <iterator>
 
 #include <Eigen/LU>
@@ -235,6 +236,20 @@ std::vector<std::optional<Eigen::Matrix2d>> bends_of(const SolvedPlanes& solved,
   return bends;
 }
 
+void widen_gyro(const Window& window, double ratio, Uncertainty& u) {
+  const auto widened = [&](const auto& covariance, double prior_sigma) {
+    auto information = (covariance.inverse() / ratio).eval();
+    information.diagonal().array() += (1 - 1 / ratio) / (prior_sigma * prior_sigma);
+    return information.inverse().eval();
+  };
+  if (u.bias_covariance)
+    u.bias_covariance = widened(*u.bias_covariance, window.gyro->prior_sigma_rad_s);
+  if (auto& sigma_s = u.time_offset_sigma_s)
+    sigma_s = std::sqrt(
+        widened(Eigen::Matrix<double, 1, 1>(*sigma_s * *sigma_s), window.gyro->time_offset_sigma_s)
+            .value());
+}
+
 void add_bends(const SolvedPlanes& solved, Uncertainty& u) {
   const auto bends = bends_of(solved, u.sigma_px);
   const auto bend_along = [&](std::size_t plane, const Vector3d& normal) -> Eigen::Matrix3d {
@@ -243,6 +258,7 @@ void add_bends(const SolvedPlanes& solved, Uncertainty& u) {
   };
   const Eigen::Matrix3d of_main = bend_along(0, solved.motion.normal);
   if (of_main.trace() > 0) u.bend_sigma_deg = degrees(std::sqrt(of_main.trace()));
+  widen_gyro(solved.window, 1 + of_main.trace() / u.normal_covariance.trace(), u);
   set_normal_covariance(u.normal_covariance + of_main, u);
   for (std::size_t k = 0; k < u.others.size(); ++k)
     u.others[k].normal_covariance += bend_along(k + 1, solved.motion.others[k].m.normalized());

@@ -19,6 +19,10 @@ namespace gpo {
 /// contribute. nullopt if the curvature is not significant. `sigma_px`: noise of a coordinate.
 std::vector<std::optional<Eigen::Matrix2d>> bends_of(const SolvedPlanes& solved, double sigma_px);
 
+/// Widens the covariances of bias and time offset by the ratio in which errors that neighboring
+/// tracks share and bends widen that of the normal, up to their priors (engine/method.md, eq. 14k).
+void widen_gyro(const Window& window, double ratio, Uncertainty& u);
+
 /// Adds the variation of all normals over surfaces that are not flat.
 void add_bends(const SolvedPlanes& solved, Uncertainty& u);
 

@@ -22,8 +22,6 @@ using Eigen::Vector3d;
 
 constexpr int kLeastClusters = 5;  // least number of frames as clusters
 
-int gyro_size(RotationModel model) { return model == RotationModel::bias ? 3 : 0; }
-
 /// Returns the part of the spread that frames have in common, without that of single observations;
 /// zero with too few frames.
 SharedMatrix spread_by_frame(const Influences& all, int frames, double degrees_of_freedom) {
@@ -111,7 +109,7 @@ std::optional<Linearization> linearize(const SolvedPlanes& solved, RotationModel
       cost += normals.cost;
     }
   }
-  const UnknownsLayout layout{observations.plane_count() - 1, gyro_size(model)};
+  const UnknownsLayout layout{observations.plane_count() - 1, gyro_unknowns(solved.window, model)};
   const int unknowns = layout.size() + own_size(model, solved.motion) * (frames - 1);
   all.sigma_px = noise_px(2 * cost, 2 * observations.count(), unknowns);
   if (huber) all.sigma_px /= kSigmaOfHuber;
@@ -131,24 +129,28 @@ Bread bread_of(const SolvedPlanes& solved, const Linearization& linearized, Rota
   const int planes = static_cast<int>(linearized.planes.size());
   const int frames = solved.frame_count();
   const int own = own_size(model, motion);
-  Bread bread{.layout = {planes - 1, gyro_size(model)}};
+  Bread bread{.layout = {planes - 1, gyro_unknowns(window, model)}};
   const int size = bread.layout.size();
   bread.columns.assign(planes, std::vector<PlaneColumns>(frames));
   bread.frames.resize(frames);
   bread.prior = SharedMatrix::Zero(size, size);
+  const int gyro = bread.layout.of_gyro();
   if (bread.layout.gyro > 0)
-    bread.prior.diagonal().tail<3>().setConstant(
+    bread.prior.diagonal().segment<3>(gyro).setConstant(
         prior_weight(linearized.sigma_px, window.gyro->prior_sigma_rad_s));
+  if (bread.layout.gyro > 3)
+    bread.prior(gyro + 3, gyro + 3) =
+        prior_weight(linearized.sigma_px, window.gyro->time_offset_sigma_s);
   bread.information = bread.prior;
   if (model == RotationModel::bias && own == 6) bread.noise_weights.resize(frames);
   for (int i = 1; i < frames; ++i) {
-    const GyroColumns gyro = gyro_columns(window, motion, i, bread.layout.gyro);
+    const GyroColumns by_gyro = gyro_columns(window, motion, i, bread.layout.gyro);
     const Vector3d tau_c = motion.R_wc[i].transpose() * motion.tau[i];
     SharedMatrix so = SharedMatrix::Zero(size, own);
     OwnMatrix oo = OwnMatrix::Zero(own, own);
     for (int k = 0; k < planes; ++k) {
       const auto& F = linearized.planes[k][i].JtJ;
-      const PlaneColumns& M = bread.columns[k][i] = plane_columns(k, tau_c, gyro);
+      const PlaneColumns& M = bread.columns[k][i] = plane_columns(k, tau_c, by_gyro);
       const std::vector<int> at = bread.places(k);
       bread.information(at, at) += M.transpose() * F * M;
       so(at, Eigen::all) += M.transpose() * F.rightCols(own);

@@ -8,10 +8,8 @@
 namespace gpo {
 namespace {
 
-int shared_size(RotationModel model) { return model == RotationModel::bias ? 5 : 2; }
-
-/// A frame's information over the shared unknowns (normal, bias) and its own (phi if rotations are
-/// free, translation last).
+/// A frame's information over the shared unknowns (normal, gyroscope) and its own (phi if rotations
+/// are free, translation last).
 struct SplitInformation {
   Eigen::MatrixXd ss, so, oo;
 };
@@ -23,9 +21,11 @@ SplitInformation split(const Window& window,
   const auto& F = normals.JtJ;
   if (model == RotationModel::free)
     return {F.topLeftCorner<2, 2>(), F.topRightCorner<2, 6>(), F.bottomRightCorner<6, 6>()};
-  Eigen::MatrixXd M = Eigen::MatrixXd::Zero(5, shared_size(model));
+  const int gyro = gyro_unknowns(window, model);
+  Eigen::MatrixXd M = Eigen::MatrixXd::Zero(5, 2 + gyro);
   M.topLeftCorner<2, 2>().setIdentity();
-  if (model == RotationModel::bias) M.bottomRightCorner<3, 3>() = window.gyro->d_bias[frame];
+  if (gyro > 0) M.block<3, 3>(2, 2) = window.gyro->d_bias[frame];
+  if (gyro > 3) M.block<3, 1>(2, 5) = window.gyro->d_offset[frame];
   return {M.transpose() * F.topLeftCorner<5, 5>() * M,
           M.transpose() * F.topRightCorner<5, 3>(),
           F.bottomRightCorner<3, 3>()};
@@ -34,10 +34,13 @@ SplitInformation split(const Window& window,
 }  // namespace
 
 SharedInformation prior_information(const Window& window, RotationModel model, double sigma_px) {
-  const int size = shared_size(model);
+  const int gyro = gyro_unknowns(window, model);
+  const int size = 2 + gyro;
   SharedInformation prior = SharedInformation::Zero(size, size);
-  if (model == RotationModel::bias)
-    prior.diagonal().tail<3>().setConstant(prior_weight(sigma_px, window.gyro->prior_sigma_rad_s));
+  if (gyro > 0)
+    prior.diagonal().segment<3>(2).setConstant(
+        prior_weight(sigma_px, window.gyro->prior_sigma_rad_s));
+  if (gyro > 3) prior(5, 5) = prior_weight(sigma_px, window.gyro->time_offset_sigma_s);
   return prior;
 }
 

@@ -56,22 +56,23 @@ WalkMoves walk_moves(const Sandwich& sandwich) {
   return walk;
 }
 
-/// Returns d(centers, bias, planes) / d(shared): p_wc = -tau with tau_i + R_wci t, t = -gain x.
+/// Returns d(centers, gyroscope, planes) / d(shared): p_wc = -tau with tau_i + R_wci t, t = -gain
+/// x.
 Eigen::MatrixXd results_by_shared(const PlaneMotion& motion, const Bread& bread) {
   const auto frames = std::ssize(motion.tau);
-  const int bias_rows = bread.layout.gyro > 0 ? 3 : 0;
+  const int gyro = bread.layout.gyro;
   const int of_planes = bread.layout.of_gyro();
   Eigen::MatrixXd M =
-      Eigen::MatrixXd::Zero(3 * (frames - 1) + bias_rows + of_planes, bread.layout.size());
+      Eigen::MatrixXd::Zero(3 * (frames - 1) + gyro + of_planes, bread.layout.size());
   for (Eigen::Index i = 1; i < frames; ++i)
     M.middleRows<3>(3 * (i - 1)) = motion.R_wc[i] * bread.frames[i].gain.bottomRows<3>();
-  if (bias_rows > 0) M.block<3, 3>(3 * (frames - 1), of_planes).setIdentity();
+  M.block(3 * (frames - 1), of_planes, gyro, gyro).setIdentity();
   M.bottomLeftCorner(of_planes, of_planes).setIdentity();
   return M;
 }
 
 struct ResultMoves {
-  Eigen::MatrixXd results;  ///< displacements of (centers, bias, planes), in columns
+  Eigen::MatrixXd results;  ///< displacements of (centers, gyroscope, planes), in columns
   Eigen::MatrixXd shared;   ///< displacements of the shared unknowns
 };
 
@@ -187,6 +188,7 @@ Eigen::MatrixXd joint_covariance(const Sandwich& sandwich,
   const Spread observations = spread_by_observation(influences, degrees_of_freedom);
   std::vector<int> blocks(bread.frames.size() - 1, 3);
   if (bread.layout.gyro > 0) blocks.push_back(3);
+  if (bread.layout.gyro > 3) blocks.push_back(1);
   bread.layout.add_plane_sizes(blocks);
   const Eigen::MatrixXd square = square_of(of_tracks);
   const SharedMatrix rest = shared - tracks * tracks.transpose() - others * others.transpose();

@@ -58,10 +58,10 @@ NoiseSpread marginals(const PlaneMotion& motion, const Bread& bread, const Sprea
   return result;
 }
 
-/// Returns the inverse information of the shared unknowns; zero for a held bias.
-std::optional<SharedMatrix> shared_inverse_of(const Bread& bread, bool holds_bias) {
+/// Returns the inverse information of the shared unknowns; zero for a held gyroscope.
+std::optional<SharedMatrix> shared_inverse_of(const Bread& bread, bool holds_gyro) {
   const int size = bread.layout.size();
-  const int unknown = holds_bias ? size - 3 : size;
+  const int unknown = holds_gyro ? bread.layout.of_gyro() : size;
   const auto inverse = inverse_information(bread.information.topLeftCorner(unknown, unknown));
   if (!inverse) return std::nullopt;
   SharedMatrix all = SharedMatrix::Zero(size, size);
@@ -75,39 +75,63 @@ SharedMatrix prior_share(const Sandwich& sandwich, double sigma_px) {
          sandwich.inverse.transpose();
 }
 
-/// Returns the covariance of a held bias: as stated, unless the second moment given the tracks
-/// contradicts its size, which is then the moment's (engine/method.md, eq. 15).
-Matrix3d held_bias_covariance(const SolvedPlanes& solved,
-                              const Linearization& linearized,
-                              double degrees_of_freedom) {
-  const Matrix3d& stated = solved.window.gyro->bias_covariance;
+/// Errors of a held gyroscope.
+struct HeldGyro {
+  Eigen::MatrixXd covariance;         ///< unknowns: bias, time offset
+  std::optional<double> late_s = {};  ///< time offset by the tracks, if significant
+};
+
+/// Bias: its covariance is as stated, unless the second moment given the tracks contradicts its
+/// size, which is then the moment's. Time offset: the moment (engine/method.md, eq. 15).
+HeldGyro held_gyro(const SolvedPlanes& solved,
+                   const Linearization& linearized,
+                   double degrees_of_freedom) {
+  const GyroSensitivity& gyro = *solved.window.gyro;
+  const Matrix3d& stated = gyro.bias_covariance;
   const double variance = linearized.sigma_px * linearized.sigma_px;
   Bread bread = bread_of(solved, linearized, RotationModel::bias);
+  const int at = bread.layout.of_gyro(), size = bread.layout.gyro;
   bread.information -= bread.prior;
-  bread.prior.bottomRightCorner<3, 3>() = variance * stated.inverse();
+  bread.prior.block<3, 3>(at, at) = variance * stated.inverse();
   bread.information += bread.prior;
+  HeldGyro held{Eigen::MatrixXd::Zero(size, size)};
+  held.covariance.topLeftCorner<3, 3>() = stated;
+  if (size > 3) held.covariance(3, 3) = std::pow(gyro.time_offset_sigma_s, 2);
   const auto inverse = inverse_information(bread.information);
-  if (!inverse) return stated;
+  if (!inverse) return held;
   const Sandwich sandwich{solved, bread, *inverse};
   const SharedMatrix covariance =
       spread_of(sandwich, influences_of(sandwich), degrees_of_freedom).shared +
       prior_share(sandwich, linearized.sigma_px);
-  const Vector3d step = newton_step(sandwich, linearized).tail<3>();
-  const Matrix3d moment = covariance.bottomRightCorner<3, 3>() + step * step.transpose();
+  const Eigen::VectorXd step = newton_step(sandwich, linearized).tail(size);
+  const Eigen::MatrixXd moment = covariance.bottomRightCorner(size, size) + step * step.transpose();
   constexpr double kLeast = 0.038, kMost = 3.78;  // 1 and 99 % of chi-square of 3, by 3
-  const double ratio = (stated.inverse() * moment).trace() / 3;
-  return ratio > kLeast && ratio < kMost ? stated : Matrix3d(ratio * stated);
+  const double ratio = (stated.inverse() * moment.topLeftCorner<3, 3>()).trace() / 3;
+  if (!(ratio > kLeast && ratio < kMost)) held.covariance.topLeftCorner<3, 3>() *= ratio;
+  if (size < 4) return held;
+  constexpr double kSignificantSigmas = 2.5;  // a late clock also widens the residuals
+  held.covariance(3, 3) = moment(3, 3);
+  const double sigma_s = std::sqrt(covariance.bottomRightCorner<1, 1>().value());
+  if (std::abs(step(3)) > kSignificantSigmas * sigma_s) held.late_s = step(3);
+  return held;
 }
 
-/// Returns the contribution of the error db of a held bias, which moves the other unknowns by
+/// Adds the contribution of the errors db of a held gyroscope, which move the other unknowns by
 /// -A_uu^-1 A_ub db.
-SharedMatrix held_bias_share(const Sandwich& sandwich,
-                             const Linearization& linearized,
-                             double degrees_of_freedom) {
-  SharedMatrix moves = -sandwich.inverse * sandwich.bread.information.rightCols(3);
-  moves.bottomRows<3>().setIdentity();
-  return moves * held_bias_covariance(sandwich.solved, linearized, degrees_of_freedom) *
-         moves.transpose();
+void add_held_gyro(const Sandwich& sandwich,
+                   const Linearization& linearized,
+                   double degrees_of_freedom,
+                   Spread& spread,
+                   Uncertainty& result) {
+  const HeldGyro held = held_gyro(sandwich.solved, linearized, degrees_of_freedom);
+  const int size = sandwich.bread.layout.gyro;
+  SharedMatrix moves = -sandwich.inverse * sandwich.bread.information.rightCols(size);
+  moves.bottomRows(size).setIdentity();
+  spread.shared += moves * held.covariance * moves.transpose();
+  result.late_s = held.late_s;
+  if (held.late_s)
+    result.clock_sigma_deg =
+        degrees(std::sqrt(held.covariance(3, 3)) * moves.col(moves.cols() - 1).head<2>().norm());
 }
 
 void add_typical_lens(const Sandwich& sandwich, Uncertainty& result) {
@@ -134,7 +158,8 @@ OfPlanes neighbors_beyond(const SolvedPlanes& solved,
 }
 
 /// Adds the covariances of all planes' normals and distances from noise, neighbors and bend. The
-/// latter two are empty for a held bias: its error would affect both, and it has its own share.
+/// latter two are empty for a held gyroscope: its errors would affect both, and it has its own
+/// share.
 void add_plane_covariances(const SolvedPlanes& solved,
                            const SharedMatrix& covariance,
                            const OfPlanes& neighbors,
@@ -160,6 +185,18 @@ void add_plane_covariances(const SolvedPlanes& solved,
   }
 }
 
+/// Adds the covariances of bias and time offset; those of the normals are complete.
+void add_gyro(const Window& window,
+              const SharedMatrix& covariance,
+              const UnknownsLayout& layout,
+              Uncertainty& result) {
+  const int gyro = layout.of_gyro();
+  result.bias_covariance = covariance.block<3, 3>(gyro, gyro);
+  if (layout.gyro > 3) result.time_offset_sigma_s = std::sqrt(covariance(gyro + 3, gyro + 3));
+  const double flat = covariance.topLeftCorner<2, 2>().trace();
+  widen_gyro(window, result.normal_covariance.trace() / flat, result);
+}
+
 void add_bounds(const SolvedPlanes& solved, const Linearization& linearized, Uncertainty& result) {
   const auto bound_deg = [&](RotationModel of) {
     return normal_sigma_deg(bread_of(solved, linearized, of).information, linearized.sigma_px);
@@ -177,9 +214,9 @@ std::optional<Uncertainty> uncertainty_of(const SolvedPlanes& solved,
   const auto linearized = linearize(solved, model);
   if (!linearized) return std::nullopt;
   const double sigma_px = linearized->sigma_px;
-  const bool holds_bias = model == RotationModel::known && window.gyro;
-  const Bread bread = bread_of(solved, *linearized, holds_bias ? RotationModel::bias : model);
-  const auto inverse = shared_inverse_of(bread, holds_bias);
+  const bool holds_gyro = model == RotationModel::known && window.gyro;
+  const Bread bread = bread_of(solved, *linearized, holds_gyro ? RotationModel::bias : model);
+  const auto inverse = shared_inverse_of(bread, holds_gyro);
   if (!inverse) return std::nullopt;
   const Sandwich sandwich{solved, bread, *inverse};
   const double residuals = 2.0 * observations.count();
@@ -193,7 +230,7 @@ std::optional<Uncertainty> uncertainty_of(const SolvedPlanes& solved,
   result.tracks = tracks_of(observations);
   OfPlanes neighbors(observations.plane_count());
   OfPlanes bends(observations.plane_count());
-  if (!holds_bias) {
+  if (!holds_gyro) {
     neighbors = neighbors_beyond(solved, model, sigma_px, spread.shared);
     bends = bends_of(solved, sigma_px);
   }
@@ -209,8 +246,10 @@ std::optional<Uncertainty> uncertainty_of(const SolvedPlanes& solved,
     spread.add(moves_of_image.back());
   }
   add_gyro_noise(sandwich, spread);
-  spread.shared += holds_bias ? held_bias_share(sandwich, *linearized, degrees_of_freedom)
-                              : prior_share(sandwich, sigma_px);
+  if (holds_gyro)
+    add_held_gyro(sandwich, *linearized, degrees_of_freedom, spread, result);
+  else
+    spread.shared += prior_share(sandwich, sigma_px);
   add_plane_covariances(solved, spread.shared, neighbors, bends, result);
   if (window.lens_moves_px.empty()) add_typical_lens(sandwich, result);
   NoiseSpread all = marginals(motion, bread, spread);
@@ -219,10 +258,9 @@ std::optional<Uncertainty> uncertainty_of(const SolvedPlanes& solved,
   if (centers == Centers::jointly) {
     result.joint_covariance =
         joint_covariance(sandwich, influences, degrees_of_freedom, moves_of_image, spread.shared);
-    result.joint_bias_rows = bread.layout.gyro > 0 ? 3 : 0;
+    result.joint_bias_rows = bread.layout.gyro;
   }
-  if (model == RotationModel::bias)
-    result.bias_covariance = spread.shared.bottomRightCorner<3, 3>();
+  if (model == RotationModel::bias) add_gyro(window, spread.shared, bread.layout, result);
   add_bounds(solved, *linearized, result);
   return result;
 }

@@ -61,6 +61,9 @@ struct Uncertainty {
   std::optional<double> bend_sigma_deg;
   /// Contribution of errors that neighboring tracks share, if significant.
   std::optional<double> neighbors_sigma_deg;
+  /// Contribution of the gyroscope's clock, if the method takes it as exact and the tracks do not.
+  std::optional<double> clock_sigma_deg;
+  std::optional<double> late_s;          ///< time offset of that clock by the tracks
   std::optional<double> lens_sigma_deg;  ///< contribution of the lens; nullopt if taken as exact
   /// The normal's standard deviation with a typical error of the calibration
   /// (`typical_lens_moves_px`); nullopt if the calibration has standard deviations.
@@ -69,16 +72,19 @@ struct Uncertainty {
   /// Contribution of the tracks' noise and neighbors, given the rotations that the method holds.
   NoiseSpread noise;
   /// Joint covariance of all p_wc but the first, stacked; then of the gyroscope bias (3 rows, if
-  /// uncertain); then for each plane, main plane first, of the normal along `normal_tangents` (2
-  /// rows) and, except for the main plane, of log(1 / distance). Empty if not computed.
+  /// uncertain) and its time offset (1 row, if uncertain); then for each plane, main plane first,
+  /// of the normal along `normal_tangents` (2 rows) and, except for the main plane, of log(1 /
+  /// distance). Empty if not computed.
   Eigen::MatrixXd joint_covariance;
-  int joint_bias_rows = 0;  ///< 3 if `joint_covariance` contains the bias
+  /// 3 if `joint_covariance` contains the bias, 4 if also the time offset.
+  int joint_bias_rows = 0;
   /// Joint covariance of the cameras but the first, six rows each: the rotation phi of
   /// R_wc exp(phi) [rad], then p_wc. Empty if not computed (`pose_prior`, engine/map.h).
   Eigen::MatrixXd pose_covariance;
   std::vector<double> distance_ratio_sigmas;       ///< for d_i / d_1, the distance from camera i
   std::vector<PlaneUncertainty> others;            ///< further planes, in their order
   std::optional<Eigen::Matrix3d> bias_covariance;  ///< [(rad/s)^2], gyroscope axes
+  std::optional<double> time_offset_sigma_s;       ///< if the clocks' offset was an unknown
   std::optional<double> row_delay_sigma_s;         ///< if it was an unknown
   /// Cramér-Rao bounds of the normal's angle [deg] at this solution.
   std::optional<double> bound_known_rotations_deg;

@@ -74,7 +74,7 @@ struct MethodOptions {
   Loss loss = Loss::huber;
   Shutter shutter = Shutter::known;
   Planes planes = Planes::all;
-  bool time_offset = false;  ///< estimate the offset between the clocks of camera and gyroscope
+  bool time_offset = true;  ///< estimate the offset between the clocks of camera and gyroscope
 
   bool operator==(const MethodOptions&) const = default;
 };

@@ -89,6 +89,10 @@ void check_window(const Window& window) {
   check_size("rotations", window.R_wc.size(), frames);
   if (window.gyro && window.gyro->d_bias.size() < frames)
     check_size("derivatives by the bias", window.gyro->d_bias.size(), frames);
+  if (window.gyro && window.gyro->time_offset_sigma_s > 0)
+    for (const auto& derivatives : {window.gyro->d_offset, window.gyro->d2_offset})
+      if (derivatives.size() < frames)
+        check_size("derivatives by the time offset", derivatives.size(), frames);
   for (const WindowPlane& plane : window.planes) {
     check_size("homographies of a plane", plane.H_i1.size(), frames);
     check_inliers(plane.inlier, window);

@@ -98,9 +98,7 @@ Model::Model(const Window& window,
 
 void Model::lay_out() {
   layout_.shared = {static_cast<int>(observations_.others.size()),
-                    options_.rotations != RotationModel::bias ? 0
-                    : options_.time_offset                    ? 4
-                                                              : 3};
+                    gyro_unknowns(window_, options_.rotations)};
   layout_.row_delay = options_.row_delay && options_.row_delay->sigma_s > 0 ? 1 : 0;
   layout_.typical_lens = window_.lens_moves_px.empty();
   if (options_.lens_parameters && lens_moves_px_.empty())

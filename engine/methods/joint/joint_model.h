@@ -21,7 +21,6 @@ namespace gpo::joint {
 struct Options {
   RotationModel rotations = RotationModel::known;
   bool gyro_noise = false;
-  bool time_offset = false;
   std::optional<RowDelayPrior> row_delay = std::nullopt;  ///< nullopt: global shutter
   bool huber = true;
   // Unknowns that are held contribute to the uncertainty only.

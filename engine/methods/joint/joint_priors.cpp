@@ -52,7 +52,8 @@ Priors Model::priors(const State& state, const Scales& scales, Priors all) const
     add(gyro + axis,
         window_.gyro->prior_sigma_rad_s,
         motion.bias_rad_s(axis) - window_.gyro->prior_rad_s(axis));
-  if (layout_.shared.gyro == 4) add(gyro + 3, kTimeOffsetSigma_s, motion.time_offset_s);
+  if (layout_.shared.gyro == 4)
+    add(gyro + 3, window_.gyro->time_offset_sigma_s, motion.time_offset_s);
   if (layout_.row_delay > 0)
     add(layout_.at_row_delay(),
         options_.row_delay->sigma_s,

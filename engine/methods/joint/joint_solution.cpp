@@ -19,7 +19,7 @@ namespace {
 using Eigen::Index;
 using Eigen::VectorXd;
 
-constexpr int kMostIterations = 12;
+constexpr int kMostIterations = 20;
 /// Then the velocities stay, because two smoothings may take turns.
 constexpr int kVelocityIterations = 5;
 constexpr double kSettled_rad = 2e-6;  // step of the normal
@@ -76,6 +76,25 @@ struct Checkpoint {
   double cost = 0;
 };
 
+/// Relaxation by the ratio of consecutive steps (Aitken): reweighted steps may overshoot again and
+/// again, or be too short, along a direction that the window hardly determines.
+struct Relaxation {
+  static constexpr double kLeast = 0.3, kMost = 3;
+  double factor = 1;
+  VectorXd last = {};  ///< previous step, not relaxed; empty after a step of another kind
+
+  double next(const VectorXd& step) {
+    if (last.size() != step.size()) {
+      factor = 1;
+    } else {
+      const double left = 1 - last.dot(step) / last.squaredNorm();
+      factor = left > 0 ? std::clamp(factor / left, kLeast, kMost) : kMost;
+    }
+    last = step;
+    return factor;
+  }
+};
+
 /// Iterates Newton steps and estimates of the noise; false if a step is not determined or the watch
 /// stops it.
 bool converge(const Model& model, Iteration& at) {
@@ -88,6 +107,7 @@ bool converge(const Model& model, Iteration& at) {
   const Normals& normals = at.normals;
   Priors priors;
   Eigen::LLT<Eigen::MatrixXd> factor;
+  Relaxation relaxation;
   for (int k = 0; k < kMostIterations && !at.watch.stop_requested(); ++k) {
     linearize(model, curvature, at);
     priors = model.priors(at.state, at.scales, std::move(priors));
@@ -110,9 +130,15 @@ bool converge(const Model& model, Iteration& at) {
     constexpr double kMargin = 20;  // times the expected decrease, -gradient.x / 2
     if (k > 1 && cost + kMargin / 2 * gradient.dot(x) > at.most_cost) return false;
     before.reset();
-    if (curvature == Curvature::of_loss) before = {at.state, at.predictions, at.scales, cost};
-    at.state = model.moved(at.state, x, normals);
-    if (curvature == Curvature::of_weights) noise = model.path_noise(normals, at.scales);
+    double relaxed = 1;
+    if (curvature == Curvature::of_loss) {
+      before = {at.state, at.predictions, at.scales, cost};
+      relaxation = {};
+    } else {
+      noise = model.path_noise(normals, at.scales);
+      relaxed = relaxation.next(x);
+    }
+    at.state = model.moved(at.state, relaxed * x, normals);
     if (k < kVelocityIterations) model.update_velocities(at.state, noise);
     model.predict(at.state, at.predictions);
     at.scales.sigma_px = noise_px(model, at.predictions);

@@ -115,8 +115,8 @@ MatrixXd moves_of_poses(const Model& model, const PlaneMotion& motion, const Mat
   return moves;
 }
 
-/// Returns the covariance of (centers without the first, bias, planes) from that of the unknowns of
-/// results.
+/// Returns the covariance of (centers without the first, gyroscope, planes) from that of the
+/// unknowns of results.
 MatrixXd covariance_of_results(const JointLayout& layout,
                                const PlaneMotion& motion,
                                MatrixXd covariance) {
@@ -129,8 +129,7 @@ MatrixXd covariance_of_results(const JointLayout& layout,
         (covariance.middleCols<3>(at) * -motion.R_wc[i].transpose()).eval();
     for (int axis = 0; axis < 3; ++axis) order.push_back(at + axis);
   }
-  for (int axis = 0; layout.shared.gyro > 0 && axis < 3; ++axis)
-    order.push_back(layout.shared.of_gyro() + axis);
+  for (int k = 0; k < layout.shared.gyro; ++k) order.push_back(layout.shared.of_gyro() + k);
   for (int k = 0; k < layout.shared.of_gyro(); ++k) order.push_back(k);
   return covariance(order, order);
 }
@@ -151,7 +150,8 @@ std::optional<double> bound_deg(const JointLayout& layout,
                                 const MatrixXd* prior_of_bias,
                                 double sigma_px) {
   std::vector<Index> unknown{0, 1};
-  for (int k = 0; prior_of_bias && k < 3; ++k) unknown.push_back(layout.shared.of_gyro() + k);
+  for (int k = 0; prior_of_bias && k < layout.shared.gyro; ++k)
+    unknown.push_back(layout.shared.of_gyro() + k);
   for (int i = 1; i < layout.frames; ++i)
     for (int axis = 0; axis < 3; ++axis) unknown.push_back(layout.at_translation(i) + axis);
   // The robust loss uses less of the information than there is.
@@ -267,8 +267,10 @@ Uncertainty uncertainty_of(const Model& model,
   add_centers(layout, state.motion, result);
   const Index gyro = layout.shared.of_gyro();
   if (layout.shared.gyro > 0) {
-    result.joint_bias_rows = 3;
+    result.joint_bias_rows = layout.shared.gyro;
     result.bias_covariance = covariance.block<3, 3>(gyro, gyro);
+    if (layout.shared.gyro > 3)
+      result.time_offset_sigma_s = std::sqrt(covariance(gyro + 3, gyro + 3));
     result.bound_unknown_bias_deg = bound_deg(layout, at, &prior, scales.sigma_px);
   }
   result.bound_known_rotations_deg = bound_deg(layout, at, nullptr, scales.sigma_px);

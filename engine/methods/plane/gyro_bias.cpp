@@ -15,6 +15,11 @@ constexpr double kMostBiasSigmas = 6;
 
 }  // namespace
 
+Window with_exact_clock(Window window) {
+  window.gyro->time_offset_sigma_s = 0;
+  return window;
+}
+
 std::optional<Window> with_prior_bias(const Window& window) {
   if (window.rotations != RotationModel::bias) return std::nullopt;
   const GyroSensitivity& gyro = *window.gyro;

@@ -14,6 +14,9 @@ namespace gpo {
 /// may have selected the wrong one of a plane's two decompositions. nullopt without one.
 std::optional<Window> with_prior_bias(const Window& window);
 
+/// Returns the window with clocks of camera and gyroscope that agree exactly.
+Window with_exact_clock(Window window);
+
 /// Returns why the estimated bias of the gyroscope shows a wrong minimum; empty if it does not.
 std::string why_implausible_bias(const Window& window, const PlaneMotion& motion);
 

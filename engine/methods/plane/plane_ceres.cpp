@@ -47,8 +47,6 @@ void turn(const Vector3d& phi, const Rotation::Moves& moves, Rotation& rotation)
   rotation.moves.emplace_back(so3_right_jacobian(phi) * moves);
 }
 
-int gyro_block_size(const PlaneUnknowns& unknowns) { return unknowns.time_offset ? 4 : 3; }
-
 Rotation rotation_at(const PlaneTask& task,
                      const Matrix3d& R_wc_start,
                      int frame,
@@ -57,13 +55,18 @@ Rotation rotation_at(const PlaneTask& task,
   if (is_shared(task.unknowns)) {
     rotation.R_wc = task.window.R_wc[frame];
     const GyroSensitivity& gyro = *task.window.gyro;
-    const int size = gyro_block_size(task.unknowns);
+    const int size = gyro_unknowns(task.window, task.unknowns.rotations);
     Rotation::Moves moves(3, size);
     moves.leftCols<3>() = gyro.d_bias[frame];
-    if (size == 4) moves.col(3) = gyro.d_offset[frame];
     Eigen::VectorXd change = Eigen::Map<const Eigen::VectorXd>(*parameters++, size);
     change.head<3>() -= gyro.bias_rad_s;
-    turn(moves * change, moves, rotation);
+    Vector3d curve = Vector3d::Zero();
+    if (size == 4) {
+      curve = gyro.d2_offset[frame] * change(3);
+      moves.col(3) = gyro.d_offset[frame] + curve;
+    }
+    const Vector3d phi = moves * change - 0.5 * change(size - 1) * curve;
+    turn(phi, moves, rotation);
   }
   if (is_own(task.unknowns))
     turn(Eigen::Map<const Vector3d>(*parameters), Matrix3d::Identity(), rotation);
@@ -82,7 +85,8 @@ class FrameCost : public ceres::CostFunction {
         plane_(plane) {
     *mutable_parameter_block_sizes() = {plane == 0 ? 4 : 3, 3};
     if (is_shared(task.unknowns))
-      mutable_parameter_block_sizes()->push_back(gyro_block_size(task.unknowns));
+      mutable_parameter_block_sizes()->push_back(
+          gyro_unknowns(task.window, task.unknowns.rotations));
     if (is_own(task.unknowns)) mutable_parameter_block_sizes()->push_back(3);
     set_num_residuals(2 * observations_.count);
   }
@@ -201,10 +205,10 @@ PlaneSolution solve_plane_with_ceres(const PlaneTask& task,
   problem.AddParameterBlock(normal, 4, new DirectionManifold);
   ordering->AddElementToGroup(normal, 3);
   if (is_shared(unknowns)) {
-    const int size = gyro_block_size(unknowns);
+    const int size = gyro_unknowns(window, unknowns.rotations);
     Eigen::Vector4d weights = Eigen::Vector4d::Constant(unknowns.sigma_px);
     weights.head<3>() /= window.gyro->prior_sigma_rad_s;
-    weights(3) /= kTimeOffsetSigma_s;
+    if (size == 4) weights(3) /= window.gyro->time_offset_sigma_s;
     problem.AddResidualBlock(
         new PriorCost(window.gyro->prior_rad_s, weights, size), nullptr, blocks.bias_offset.data());
     ordering->AddElementToGroup(blocks.bias_offset.data(), 4);

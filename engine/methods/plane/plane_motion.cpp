@@ -51,8 +51,10 @@ std::vector<Pose> cameras_of(const PlaneMotion& motion) {
 
 Eigen::Vector3d gyro_correction_rad(const Window& window, int frame, const PlaneMotion& motion) {
   const GyroSensitivity& gyro = *window.gyro;
-  return gyro.d_bias[frame] * (motion.bias_rad_s - gyro.bias_rad_s) +
-         gyro.d_offset[frame] * motion.time_offset_s;
+  const Eigen::Vector3d by_bias = gyro.d_bias[frame] * (motion.bias_rad_s - gyro.bias_rad_s);
+  const double dt_s = motion.time_offset_s;
+  if (dt_s == 0) return by_bias;
+  return by_bias + dt_s * (gyro.d_offset[frame] + 0.5 * dt_s * gyro.d2_offset[frame]);
 }
 
 Eigen::Matrix3d gyro_rotation(const Window& window, int frame, const PlaneMotion& motion) {
@@ -91,11 +93,18 @@ Eigen::Vector3d moved_normal(const Eigen::Vector3d& normal, const Eigen::Vector2
   return (std::cos(angle) * normal + sinc * (normal_tangents(normal) * u_rad)).normalized();
 }
 
+int gyro_unknowns(const Window& window, RotationModel rotations) {
+  if (rotations != RotationModel::bias) return 0;
+  return window.gyro->time_offset_sigma_s > 0 ? 4 : 3;
+}
+
 GyroColumns gyro_columns(const Window& window, const PlaneMotion& motion, int frame, int unknowns) {
   GyroColumns columns(3, unknowns);
   if (unknowns == 0) return columns;
   columns.leftCols<3>() = window.gyro->d_bias[frame];
-  if (unknowns == 4) columns.col(3) = window.gyro->d_offset[frame];
+  if (unknowns == 4)
+    columns.col(3) =
+        window.gyro->d_offset[frame] + motion.time_offset_s * window.gyro->d2_offset[frame];
   columns = so3_right_jacobian(gyro_correction_rad(window, frame, motion)) * columns;
   if (!motion.gyro_noise_rad.empty()) columns = so3_exp(-motion.gyro_noise_rad[frame]) * columns;
   return columns;

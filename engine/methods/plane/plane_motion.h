@@ -75,15 +75,11 @@ Eigen::Vector3d moved_normal(const Eigen::Vector3d& normal, const Eigen::Vector2
 struct PlaneUnknowns {
   /// bias: needs the window's `gyro`. free: three more unknowns per frame.
   RotationModel rotations = RotationModel::known;
-  bool time_offset = false;  ///< with `bias`: also the offset between the clocks
-  double sigma_px = 0.5;     ///< noise of a coordinate, the weight of the priors
+  double sigma_px = 0.5;  ///< noise of a coordinate, the weight of the priors
   /// With `bias`: the gyroscope's integrated noise, three more unknowns per frame, with a prior
   /// that is independent between frames (engine/method.md, eq. 6b).
   bool gyro_noise = false;
 };
-
-/// Prior standard deviation of the offset between the clocks [s].
-inline constexpr double kTimeOffsetSigma_s = 0.02;
 
 /// Returns the weight of a prior with standard deviation `sigma` relative to the pixel noise.
 inline double prior_weight(double sigma_px, double sigma) {
@@ -107,6 +103,10 @@ struct UnknownsLayout {
   }
   int size() const { return of_gyro() + gyro; }
 };
+
+/// Returns the number of the gyroscope's unknowns: 3 with an unknown bias, 4 also with an unknown
+/// time offset, else 0.
+int gyro_unknowns(const Window& window, RotationModel rotations);
 
 using GyroColumns = Eigen::Matrix<double, 3, Eigen::Dynamic, 0, 3, 4>;
 /// d(u, phi, t) of a frame's kernel / d(unknowns of one plane, gyroscope unknowns).

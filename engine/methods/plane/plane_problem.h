@@ -82,9 +82,7 @@ class PlaneProblem {
         observations_(task.observations),
         unknowns_(task.unknowns),
         layout_{static_cast<int>(observations_.others.size()),
-                unknowns_.rotations != RotationModel::bias ? 0
-                : unknowns_.time_offset                    ? 4
-                                                           : 3} {}
+                gyro_unknowns(window_, unknowns_.rotations)} {}
 
   int frame_count() const { return window_.frame_count(); }
   int unknown_count() const { return layout_.size() + S::kOwn * (frame_count() - 1); }
@@ -244,7 +242,9 @@ class PlaneProblem {
   double bias_weight() const {
     return prior_weight(unknowns_.sigma_px, window_.gyro->prior_sigma_rad_s);
   }
-  double offset_weight() const { return prior_weight(unknowns_.sigma_px, kTimeOffsetSigma_s); }
+  double offset_weight() const {
+    return prior_weight(unknowns_.sigma_px, window_.gyro->time_offset_sigma_s);
+  }
 
   const Window& window_;
   const PlaneObservations& observations_;

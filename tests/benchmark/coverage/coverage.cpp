@@ -42,6 +42,7 @@ struct Case {
   double lens_px = 0;                    ///< smooth residual of the lens, at the corners
   double bend_px = 0;                    ///< quadratic distortion of the image
   double outliers = 0;                   ///< share of the tracks off the plane
+  double late_s = 0;                     ///< gyroscope clock - camera clock, unknown
 };
 
 const std::vector<Case> kCases = {
@@ -50,6 +51,8 @@ const std::vector<Case> kCases = {
     {.name = "noise 0.5 px"},
     {.name = "noise 1 px", .noise_px = 1, .reference_noise_px = 1},
     {.name = "gyroscope", .given = Given::gyroscope},
+    {.name = "gyroscope, exact reference", .given = Given::gyroscope, .reference_noise_px = 0},
+    {.name = "gyroscope 10 ms late", .given = Given::gyroscope, .late_s = 0.01},
     {.name = "images only", .given = Given::nothing},
     {.name = "20 us", .row_delay_s = 2e-5},
     {.name = "20 us, known", .row_delay_s = 2e-5, .shutter = Shutter::known},
@@ -58,6 +61,10 @@ const std::vector<Case> kCases = {
     {.name = "40 us, known", .row_delay_s = 4e-5, .shutter = Shutter::known},
     {.name = "40 us, as global", .row_delay_s = 4e-5, .shutter = Shutter::global},
     {.name = "40 us, gyroscope", .given = Given::gyroscope, .row_delay_s = 4e-5},
+    {.name = "40 us, gyroscope 10 ms late",
+     .given = Given::gyroscope,
+     .row_delay_s = 4e-5,
+     .late_s = 0.01},
     {.name = "40 us, images only", .given = Given::nothing, .row_delay_s = 4e-5},
     {.name = "40 us, exact reference", .reference_noise_px = 0, .row_delay_s = 4e-5},
     {.name = "lens 0.3 px", .lens_px = 0.3},
@@ -198,6 +205,7 @@ void measure(const Case& one, ErrorModel error, int windows) {
       options.seed = 1000 + number;
       options.gyro_bias_rad_s = 0.02;
       options.gyro_noise_rad_s = 0.002;
+      options.gyro_offset_s = one.late_s;
       gyroscope = test::simulated_gyroscope(options);
     }
     InitializeOptions options;

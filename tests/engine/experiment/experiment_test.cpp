@@ -194,12 +194,13 @@ TEST(Configuration, SortsTheChangesInItsKey) {
 }
 
 TEST(Configuration, ChangesOptionsAndGravityIfTheMethodSupportsThem) {
-  const Configuration squared = parse_configuration("gpo_joint+global-shutter+squared+time-offset");
+  const Configuration squared =
+      parse_configuration("gpo_joint+global-shutter+squared+no-time-offset");
   const Settings settings = apply(squared, {});
   EXPECT_EQ(settings.options.method_options.loss, Loss::squared);
   EXPECT_EQ(settings.options.method_options.shutter, Shutter::global);
-  EXPECT_TRUE(settings.options.method_options.time_offset);
-  EXPECT_EQ(key_of(squared), "gpo_joint+squared+global-shutter+time-offset");
+  EXPECT_FALSE(settings.options.method_options.time_offset);
+  EXPECT_EQ(key_of(squared), "gpo_joint+squared+global-shutter+no-time-offset");
   EXPECT_EQ(configuration_of(settings), squared);
   EXPECT_THAT(refusal_of("ba+huber"), HasSubstr("methods: 'ba+huber': ba does not read 'loss'"));
   const Configuration joint = parse_configuration("gpo_joint+joint-gravity");

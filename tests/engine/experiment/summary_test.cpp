@@ -78,7 +78,7 @@ TEST(Row, LeavesUnreadSettingsEmpty) {
           {"gravity", "joint"},
           {"loss", "squared"},
           {"shutter", "known"},
-          {"time_offset", "false"}});
+          {"time_offset", "true"}});
 }
 
 TEST(Row, SurvivesJsonExactlyAndQuotesReasonsInCsv) {

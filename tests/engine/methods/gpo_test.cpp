@@ -238,16 +238,21 @@ TEST(GpoJoint, WeighsNoisyGyroscopeAgainstImages) {
 
 TEST(GpoJoint, FindsOffsetBetweenClocks) {
   std::vector<double> errors_s;
+  double squares = 0;
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
     const Simulation truth = simulate_fitted(
         {.motion = Motion::wander, .gyro_bias_rad_s = 0.002, .gyro_offset_s = 0.005, .seed = seed});
-    const Initialization result = successful(
-        initialize_gpo_joint(truth.window, {.shutter = Shutter::global, .time_offset = true}, {}));
+    const Initialization result =
+        successful(initialize_gpo_joint(truth.window, {.shutter = Shutter::global}, {}));
     if (!result.time_offset_s) continue;  // the images determine the rotations better
     errors_s.push_back(std::abs(*result.time_offset_s - 0.005));
+    squares += std::pow(errors_s.back() / result.uncertainty->time_offset_sigma_s.value(), 2);
   }
   ASSERT_GT(errors_s.size(), 15);
   EXPECT_LT(median(errors_s), 0.001);
+  const double mean = squares / static_cast<double>(errors_s.size());
+  EXPECT_GT(mean, 0.4);
+  EXPECT_LT(mean, 2);
 }
 
 TEST(GpoJoint, HuberLossResistsTracksThatSlip) {

@@ -362,7 +362,7 @@ TEST(Trace, CombinesAllRounds) {
       simulate_fitted({.motion = Motion::orbit, .gyro_bias_rad_s = 0.002, .row_delay_s = 3e-5});
   for (const MethodOptions& options :
        {MethodOptions{},
-        MethodOptions{.time_offset = true},
+        MethodOptions{.time_offset = false},
         MethodOptions{.loss = Loss::huber},
         MethodOptions{.error = ErrorModel::sampson, .shutter = Shutter::global}}) {
     const Initialization result = successful(initialize_gpo_joint(truth.window, options, {}));

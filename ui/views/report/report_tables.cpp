@@ -55,6 +55,7 @@ std::string normal_parts(const Uncertainty& u) {
   };
   add("neighboring tracks", u.neighbors_sigma_deg);
   add("bent surface", u.bend_sigma_deg);
+  add("late clock", u.clock_sigma_deg);
   add("lens", u.lens_sigma_deg);
   if (u.typical_lens_sigma_deg)
     text += fmt::format("; {:.3g} deg with a typical error of the calibration",
@@ -117,7 +118,9 @@ void add_sensor_numbers(Numbers& numbers, const Inspection& inspection) {
   if (result.time_offset_s)
     numbers.add("time offset of the gyroscope",
                 fmt::format("{:.2f} ms", 1e3 * *result.time_offset_s),
-                "unknown");
+                u && u->time_offset_sigma_s
+                    ? fmt::format("{:.2g} ms", 1e3 * *u->time_offset_sigma_s)
+                    : "unknown");
   if (result.row_delay_s)
     numbers.add("row delay",
                 fmt::format("{:.2f} us", 1e6 * *result.row_delay_s),

@@ -33,12 +33,15 @@ double normal_square(const Initialization& result, const Simulation& truth) {
       result.uncertainty->normal_covariance.completeOrthogonalDecomposition().solve(error));
 }
 
-Simulation noisy_window(std::uint64_t seed, std::optional<double> bias_rad_s = std::nullopt) {
+Simulation noisy_window(std::uint64_t seed,
+                        std::optional<double> bias_rad_s = std::nullopt,
+                        double late_s = 0) {
   constexpr std::array kTried{Motion::orbit, Motion::wander, Motion::arc};
   return simulate_fitted({.motion = kTried[seed % 3],
                           .frames = 20,
                           .points = 120,
                           .gyro_bias_rad_s = bias_rad_s,
+                          .gyro_offset_s = late_s,
                           .reference_noise_px = 0.5,
                           .seed = seed});
 }
@@ -122,7 +125,7 @@ TEST(OwnUncertainty, MethodThatFailsWithoutAnyGroupOfTracksIsNotReady) {
 }
 
 /// A bias of 0.003 rad/s tilts the normal of these windows by some tenths of a degree.
-TEST(HeldBias, IsBoundedByTheTracksHoweverWideItsPrior) {
+TEST(HeldGyroscope, HasBiasBoundedByTheTracksHoweverWideItsPrior) {
   double squares = 0;
   std::vector<double> sigmas;
   for (std::uint64_t seed = 1; seed <= 40; ++seed) {
@@ -137,6 +140,29 @@ TEST(HeldBias, IsBoundedByTheTracksHoweverWideItsPrior) {
   ASSERT_GT(sigmas.size(), 35);
   EXPECT_LT(squares / static_cast<double>(sigmas.size()), 4);
   EXPECT_GT(median(sigmas), 0.3);
+}
+
+/// A clock that is 10 ms late tilts the normal as much.
+TEST(HeldGyroscope, HasClockAsLateAsTheTracksTell) {
+  std::vector<double> sigmas_deg[2], late_s[2];
+  for (const int late : {0, 1}) {
+    double squares = 0;
+    for (std::uint64_t seed = 1; seed <= 40; ++seed) {
+      Simulation truth = noisy_window(seed, 0.0, 0.01 * late);
+      truth.window.gyro->bias_covariance = 1e-8 * Eigen::Matrix3d::Identity();
+      const Initialization result = resampled_by("gpo", truth.window);
+      if (!result.ok) continue;
+      squares += normal_square(result, truth);
+      sigmas_deg[late].push_back(result.uncertainty->normal_sigma_deg);
+      if (result.uncertainty->late_s) late_s[late].push_back(*result.uncertainty->late_s);
+    }
+    ASSERT_GT(sigmas_deg[late].size(), 35);
+    EXPECT_LT(squares / static_cast<double>(sigmas_deg[late].size()), 4) << late;
+  }
+  EXPECT_GT(median(sigmas_deg[1]), 2 * median(sigmas_deg[0]));
+  EXPECT_LE(late_s[0].size(), 2);
+  ASSERT_GT(late_s[1].size(), 20);
+  EXPECT_NEAR(median(late_s[1]), 0.01, 0.003);
 }
 
 TEST(WithoutTracks, HomographiesAreThoseOfTheOtherTracks) {

@@ -71,16 +71,17 @@ Motion motion_of_seed(std::uint64_t seed) {
   return std::array{Motion::orbit, Motion::wander, Motion::arc}[seed % 3];
 }
 
-/// Simulates a window whose bias is drawn from its prior.
-Simulation window_of_rotations(Motion motion, RotationModel rotations, std::uint64_t seed) {
+/// Simulates a window whose bias is drawn from its prior, and its clock with this deviation.
+Simulation drawn_window(Motion motion, RotationModel model, std::uint64_t seed, double late_s = 0) {
   SimulationOptions options{.motion = motion, .seed = seed};
-  if (rotations == RotationModel::bias) {
+  if (model == RotationModel::bias) {
     std::mt19937_64 random(seed + 77);
     std::normal_distribution<double> gauss(0, 0.01);
     options.gyro_bias_rad_s = Vector3d(gauss(random), gauss(random), gauss(random)).norm();
+    options.gyro_offset_s = 100 * late_s * gauss(random);
   }
   Simulation truth = simulate_fitted(options);
-  truth.window.rotations = rotations;
+  truth.window.rotations = model;
   return truth;
 }
 
@@ -97,9 +98,9 @@ class NormalizedErrors : public testing::TestWithParam<RotationModel> {};
 
 TEST_P(NormalizedErrors, FollowChiSquareDistribution) {
   NormalAndCenter errors;
-  ChiSquare ratio{1}, bias{3};
+  ChiSquare ratio{1}, bias{3}, clock{1};
   for (std::uint64_t seed = 1; seed <= 240; ++seed) {
-    const Simulation truth = window_of_rotations(motion_of_seed(seed), GetParam(), seed);
+    const Simulation truth = drawn_window(motion_of_seed(seed), GetParam(), seed, 0.01);
     const Initialization result = solved_by("gpo_joint", truth.window);
     ASSERT_TRUE(result.ok);
     const Uncertainty& u = *result.uncertainty;
@@ -109,12 +110,15 @@ TEST_P(NormalizedErrors, FollowChiSquareDistribution) {
     const double ratio_error = result.plane.normal.dot(result.cameras.back().p_wc) -
                                truth.plane.normal.dot(truth.cameras.back().p_wc);
     ratio.add(std::pow(ratio_error / u.distance_ratio_sigmas.back(), 2));
-    if (GetParam() == RotationModel::bias)
-      bias.add(normalized_square(*result.bias_rad_s - truth.bias_rad_s, *u.bias_covariance));
+    if (GetParam() != RotationModel::bias) continue;
+    bias.add(normalized_square(*result.bias_rad_s - truth.bias_rad_s, *u.bias_covariance));
+    clock.add(std::pow((*result.time_offset_s - truth.time_offset_s) / *u.time_offset_sigma_s, 2));
   }
   errors.expect();
   ratio.expect();
-  if (GetParam() == RotationModel::bias) bias.expect(2);  // up to a sixth too small
+  if (GetParam() != RotationModel::bias) return;
+  bias.expect(2);  // up to a sixth too small
+  clock.expect();
 }
 
 INSTANTIATE_TEST_SUITE_P(,
@@ -147,7 +151,8 @@ TEST(Uncertainty, ModelsGyroscopeNoiseAsRandomWalk) {
 TEST(Uncertainty, PropagatesPriorOfHeldBias) {
   NormalAndCenter errors;
   for (std::uint64_t seed = 1; seed <= 240; ++seed) {
-    const Simulation truth = window_of_rotations(motion_of_seed(seed), RotationModel::bias, seed);
+    Simulation truth = drawn_window(motion_of_seed(seed), RotationModel::bias, seed);
+    truth.window.gyro->time_offset_sigma_s = 0;
     const Initialization result = solved_by("gpo", truth.window);
     ASSERT_TRUE(result.ok);
     EXPECT_EQ(result.uncertainty->rotations, RotationModel::known);
@@ -182,7 +187,7 @@ const MethodOptions kSquared = {.loss = Loss::squared};
 TEST(Uncertainty, PropagatesLensErrors) {
   for (const RotationModel model :
        {RotationModel::known, RotationModel::bias, RotationModel::free}) {
-    const Simulation truth = window_of_rotations(Motion::wander, model, 5);
+    const Simulation truth = drawn_window(Motion::wander, model, 5);
     const auto moves = lens_moves(truth.window, 1e-2, 1e-5);
     for (int k = 0; k < 2; ++k) {
       const auto solved = [&](double sign) {
@@ -214,7 +219,7 @@ TEST(Uncertainty, PropagatesLensErrors) {
 TEST(Uncertainty, FollowsChiSquareDistributionForUncertainLens) {
   NormalAndCenter errors;
   for (std::uint64_t seed = 1; seed <= 120; ++seed) {
-    const Simulation truth = window_of_rotations(motion_of_seed(seed), RotationModel::known, seed);
+    const Simulation truth = drawn_window(motion_of_seed(seed), RotationModel::known, seed);
     Window window = truth.window;
     std::mt19937_64 random(seed);
     const auto moves = lens_moves(truth.window, 1.5, 0.0006);
@@ -342,7 +347,7 @@ TEST(JointCenters, ContainCovariancesOfCentersAndBias) {
         uncertainty_of(truth.window, truth.plane, truth.cameras, rotations, Centers::jointly);
     ASSERT_TRUE(u);
     const Eigen::MatrixXd& all = u->joint_covariance;
-    EXPECT_EQ(u->joint_bias_rows, rotations == RotationModel::free ? 0 : 3);
+    EXPECT_EQ(u->joint_bias_rows, rotations == RotationModel::free ? 0 : 4);
     ASSERT_EQ(all.rows(), 3 * 19 + u->joint_bias_rows + 2);
     for (int i = 1; i < 20; ++i) {
       const Eigen::Matrix3d& one = u->center_covariances[i];
@@ -389,11 +394,6 @@ TEST(JointCenters, HaveErrorsOfTheirInverseWithFewTracks) {
       EXPECT_LT(sum / kWindows, 1.7) << method << ' ' << points;
     }
   }
-}
-
-TEST(ShrunkCovariance, IsZeroWithoutErrors) {
-  const Eigen::MatrixXd zero = Eigen::MatrixXd::Zero(6, 6);
-  EXPECT_EQ(shrunk_covariance(zero.leftCols(4), zero, zero), zero);
 }
 
 }  // namespace

@@ -60,14 +60,21 @@ Window with_noisy_gyroscope(Window window, double noise_density = 3e-4) {
   return window;
 }
 
-class PlaneSolverJudged : public testing::TestWithParam<PlaneUnknowns> {};
+struct Judged {
+  PlaneUnknowns unknowns;
+  bool time_offset = false;
+};
+
+class PlaneSolverJudged : public testing::TestWithParam<Judged> {};
 
 TEST_P(PlaneSolverJudged, MatchesCeres) {
+  const PlaneUnknowns& unknowns = GetParam().unknowns;
   int same = 0, equal = 0;
   for (std::uint64_t seed = 1; seed <= 160; ++seed) {
-    const Window window = with_noisy_gyroscope(random_window(seed).window);
+    Window window = with_noisy_gyroscope(random_window(seed).window);
+    if (!GetParam().time_offset) window.gyro->time_offset_sigma_s = 0;
     const PlaneObservations observations = plane_observations(window);
-    const PlaneTask task{window, observations, GetParam()};
+    const PlaneTask task{window, observations, unknowns};
     const PlaneMotion start =
         solve_plane({window, observations, {}}, *closed_form_motion(window), {}).motion;
     const PlaneSolution ours = solve_plane(task, start, {});
@@ -77,7 +84,7 @@ TEST_P(PlaneSolverJudged, MatchesCeres) {
     EXPECT_LE(ours.solver.final_cost, ceres.solver.final_cost * (1 + 1e-9) + 1e-12) << seed;
     const bool same_cost = std::abs(ours.solver.final_cost - ceres.solver.final_cost) <
                            1e-9 * ceres.solver.final_cost + 1e-12;
-    if (same_cost && GetParam().rotations == RotationModel::known) {
+    if (same_cost && unknowns.rotations == RotationModel::known) {
       EXPECT_LT(difference(ours.motion, ceres.motion), 1e-8) << seed;
     }
     same += same_cost ? 1 : 0;
@@ -86,23 +93,22 @@ TEST_P(PlaneSolverJudged, MatchesCeres) {
   EXPECT_GE(same, 157);
   // In the others the cost hardly depends on the normal (little parallax, motion along it), and
   // Ceres stops at rounding errors.
-  EXPECT_GE(equal, GetParam().rotations == RotationModel::known ? 145 : 120);
+  EXPECT_GE(equal, unknowns.rotations == RotationModel::known ? 145 : 120);
 }
 
 INSTANTIATE_TEST_SUITE_P(
     ,
     PlaneSolverJudged,
-    testing::Values(PlaneUnknowns{.rotations = RotationModel::known},
-                    PlaneUnknowns{.rotations = RotationModel::bias},
-                    PlaneUnknowns{.rotations = RotationModel::bias, .time_offset = true},
-                    PlaneUnknowns{.rotations = RotationModel::bias, .gyro_noise = true},
-                    PlaneUnknowns{
-                        .rotations = RotationModel::bias, .time_offset = true, .gyro_noise = true},
-                    PlaneUnknowns{.rotations = RotationModel::free}),
+    testing::Values(Judged{{.rotations = RotationModel::known}},
+                    Judged{{.rotations = RotationModel::bias}},
+                    Judged{{.rotations = RotationModel::bias}, true},
+                    Judged{{.rotations = RotationModel::bias, .gyro_noise = true}},
+                    Judged{{.rotations = RotationModel::bias, .gyro_noise = true}, true},
+                    Judged{{.rotations = RotationModel::free}}),
     [](const auto& each) {
-      return std::string(to_string(each.param.rotations)) +
+      return std::string(to_string(each.param.unknowns.rotations)) +
              (each.param.time_offset ? "_and_offset" : "") +
-             (each.param.gyro_noise ? "_and_noise" : "");
+             (each.param.unknowns.gyro_noise ? "_and_noise" : "");
     });
 
 TEST(PlaneSolver, IsExactWithoutNoise) {
