@@ -56,10 +56,8 @@ std::shared_ptr<const NormalStudy> study_normals(const Inspection& inspection,
 /// Returns the true normal in the reference camera, towards it; nullopt if unknown.
 std::optional<Eigen::Vector3d> true_normal(const Inspection& inspection);
 
-/// Returns H_i1 = K R_ciw (I - tau_i n^T) K^-1 by the result's plane and poses, undistorted;
-/// nullopt if the initialization failed.
-std::optional<Eigen::Matrix3d> estimated_homography(const Inspection& inspection,
-                                                    int frame_in_window);
+/// Returns H_i1 = K R_ciw (I - tau_i n^T) K^-1 of a camera and a plane, undistorted.
+Eigen::Matrix3d homography_of(const Window& window, const Pose& camera, const Plane& plane);
 
 /// Returns the lengths of the inliers' residuals in a frame of the window [raw px]: from the
 /// observation to the result's prediction from the reference frame. Empty if the initialization

@@ -35,12 +35,6 @@ TrackPlane plane_of_track(const Inspection& inspection, int column) {
   return {&result.plane, leader};
 }
 
-Eigen::Matrix3d homography_of(const Window& window, const Pose& pose, const Plane& plane) {
-  const Eigen::Vector3d tau = -pose.p_wc / plane.distance;
-  return window.K * pose.R_wc.transpose() *
-         (Eigen::Matrix3d::Identity() - tau * plane.normal.transpose()) * window.K.inverse();
-}
-
 /// Reads the tracks, not the window, which does not have the excluded ones.
 TrackFrame frame_of(const Inspection& inspection, int frame, int column, const TrackPlane& on) {
   const Tracks& tracks = *inspection.tracks;
@@ -170,23 +164,22 @@ std::string loss_of(const Tracks& tracks, int column) {
 
 }  // namespace
 
-std::optional<Eigen::Matrix3d> estimated_homography(const Inspection& inspection,
-                                                    int frame_in_window) {
-  const Window& window = *inspection.window;
-  const Initialization& estimate = *inspection.initialization;
-  if (!estimate.ok) return std::nullopt;
-  return homography_of(window, estimate.cameras[frame_in_window], estimate.plane);
+Eigen::Matrix3d homography_of(const Window& window, const Pose& pose, const Plane& plane) {
+  const Eigen::Vector3d tau = -pose.p_wc / plane.distance;
+  return window.K * pose.R_wc.transpose() *
+         (Eigen::Matrix3d::Identity() - tau * plane.normal.transpose()) * window.K.inverse();
 }
 
 std::vector<double> residuals_px(const Inspection& inspection, int frame_in_window) {
-  const auto H = estimated_homography(inspection, frame_in_window);
-  if (!H) return {};
   const Window& window = *inspection.window;
+  const Initialization& result = *inspection.initialization;
+  if (!result.ok) return {};
+  const auto H = homography_of(window, result.cameras[frame_in_window], result.plane);
   std::vector<double> residuals;
   for (int j = 0; j < window.track_count(); ++j) {
     if (!window.inlier[frame_in_window][j]) continue;
     const Eigen::Vector2d predicted =
-        distort(inspection.recording->camera, transfer(*H, window.points_px[0].col(j)));
+        distort(inspection.recording->camera, transfer(H, window.points_px[0].col(j)));
     const double residual = (predicted - inspection.tracks->raw_px[frame_in_window].col(j)).norm();
     if (std::isfinite(residual)) residuals.push_back(residual);
   }

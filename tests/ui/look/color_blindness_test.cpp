@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/methods/methods.h"
 #include "ui/look/look.h"
+#include "ui/views/overlay/overlay.h"
 
 #include <algorithm>
 #include <cmath>
@@ -79,6 +80,15 @@ TEST(ColorBlindness, EveryoneTellsTheVerdictsApart) {
     EXPECT_GT(distance(rgb(Role::good), rgb(Role::warning)), 20);
     EXPECT_GT(distance(rgb(Role::good), rgb(Role::bad)), 15);
     EXPECT_GT(distance(rgb(Role::warning), rgb(Role::bad)), 15);
+  }
+}
+
+TEST(ColorBlindness, EveryoneTellsPlanesFromEachOtherAndFromVerdicts) {
+  for (int plane = 0; plane < 5; ++plane) {
+    for (int other = 0; other < plane; ++other)
+      EXPECT_GT(distance(plane_color(plane), plane_color(other)), 13) << plane << other;
+    for (const Role verdict : {Role::warning, Role::bad})
+      EXPECT_GT(distance(plane_color(plane), color_of(verdict, Theme::dark)), 16) << plane;
   }
 }
 

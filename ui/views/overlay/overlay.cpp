@@ -27,8 +27,9 @@ void draw_ground(const Area& area, std::uint32_t frame_rgb) {
   area.list.AddRect(low, high, imgui_color(frame_rgb, 0.9), 5 * s, 0, s);
 }
 
-/// Okabe and Ito's colors that mean nothing else: orange, reddish purple, blue; and ochre.
-constexpr std::array<std::uint32_t, 4> kOtherPlanes = {0xE69F00, 0xCC79A7, 0x4A7FD0, 0xB59B3C};
+/// Lavender, reddish purple, blue, violet: no verdict has them, and color-blind people can tell them
+/// apart.
+constexpr std::array<std::uint32_t, 4> kOtherPlanes = {0xB49CFF, 0xCC79A7, 0x4A7FD0, 0x7450E5};
 
 }  // namespace
 

@@ -141,6 +141,36 @@ TEST(ImageGeometry, ResidualsOfATrueEstimateAreTheNoiseOfTheTracks) {
   EXPECT_TRUE(residual_vectors(made_inspection({.ok = false}), 3).empty());
 }
 
+TEST(ImageGeometry, TracksOfAFurtherPlaneHaveTheResidualsOfTheirPlane) {
+  Inspection inspection = made_inspection();
+  const std::size_t all = residual_vectors(inspection, 12).size();
+  Window window = *inspection.window;
+  Initialization result = *inspection.initialization;
+  window.planes.assign(2, {.inlier = window.inlier});
+  for (std::vector<bool>& inlier : window.inlier)
+    for (std::size_t track = 0; track < inlier.size(); ++track)
+      if (track % 3 == 0) inlier[track] = false;
+  window.planes[0].inlier = window.inlier;
+  for (std::size_t i = 0; i < window.inlier.size(); ++i)
+    for (std::size_t track = 0; track < window.inlier[i].size(); ++track)
+      if (track % 3 != 0) window.planes[1].inlier[i][track] = false;
+  result.planes = {{0, result.plane}, {1, result.plane}};
+  // Half as far: parallax by the main plane would be half of that by their own.
+  result.planes[1].plane.distance /= 2;
+  inspection.window = std::make_shared<const Window>(std::move(window));
+  inspection.initialization = std::make_shared<const Initialization>(std::move(result));
+  const auto residuals = residual_vectors(inspection, 12);
+  EXPECT_EQ(residuals.size(), all);
+  for (const ResidualVector& r : residuals) {
+    const double px = (r.predicted_px - r.observed_px).norm();
+    if (r.track % 3 == 0) {
+      EXPECT_GT(px, 3) << r.track;
+    } else {
+      EXPECT_LT(px, 3) << r.track;
+    }
+  }
+}
+
 TEST(Horizon, IsARowForALevelPinholeAndMovesWithTheCamera) {
   const auto level = horizon_in_image(kPinhole, Pose{}, -Vector3d::UnitY());
   ASSERT_EQ(level.size(), 1U);
