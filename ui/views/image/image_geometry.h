@@ -91,8 +91,8 @@ struct ResidualVector {
   Vector2d predicted_px;
 };
 
-/// Returns the residuals of all planes' inliers through H_i1 = K R_ciw (I - tau_i n^T) K^-1, each by
-/// its own plane; empty if the initialization failed.
+/// Returns the residuals of all planes' inliers through H_i1 = K R_ciw (I - tau_i n^T) K^-1, each
+/// by its own plane; empty if the initialization failed.
 std::vector<ResidualVector> residual_vectors(const Inspection& inspection, int frame);
 
 using Triangle = std::array<Vector2d, 3>;

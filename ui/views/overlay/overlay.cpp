@@ -27,8 +27,8 @@ void draw_ground(const Area& area, std::uint32_t frame_rgb) {
   area.list.AddRect(low, high, imgui_color(frame_rgb, 0.9), 5 * s, 0, s);
 }
 
-/// Lavender, reddish purple, blue, violet: no verdict has them, and color-blind people can tell them
-/// apart.
+/// Lavender, reddish purple, blue, violet: no verdict has them, and color-blind people distinguish
+/// all of them.
 constexpr std::array<std::uint32_t, 4> kOtherPlanes = {0xB49CFF, 0xCC79A7, 0x4A7FD0, 0x7450E5};
 
 }  // namespace
