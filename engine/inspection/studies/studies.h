@@ -56,12 +56,20 @@ std::shared_ptr<const NormalStudy> study_normals(const Inspection& inspection,
 /// Returns the true normal in the reference camera, towards it; nullopt if unknown.
 std::optional<Eigen::Vector3d> true_normal(const Inspection& inspection);
 
-/// Returns H_i1 = K R_ciw (I - tau_i n^T) K^-1 of a camera and a plane, undistorted.
-Eigen::Matrix3d homography_of(const Window& window, const Pose& camera, const Plane& plane);
+/// Observation of a track, and its prediction from its plane, the poses and the reference frame.
+struct ResidualVector {
+  int track;
+  int plane;                                  ///< number
+  Eigen::Vector2d observed_px, predicted_px;  ///< raw
+};
 
-/// Returns the lengths of the inliers' residuals in a frame of the window [raw px]: from the
-/// observation to the result's prediction from the reference frame. Empty if the initialization
-/// failed.
+/// Returns the residuals of all planes' inliers in a frame of the window; empty if the
+/// initialization failed.
+std::vector<ResidualVector> residual_vectors(const Inspection& inspection, int frame_in_window);
+
+/// Returns the lengths of the main plane's inliers' residuals in a frame of the window [raw px]:
+/// from the observation to the result's prediction from the reference frame. Empty if the
+/// initialization failed.
 std::vector<double> residuals_px(const Inspection& inspection, int frame_in_window);
 
 struct TrackFrame {

@@ -35,6 +35,13 @@ TrackPlane plane_of_track(const Inspection& inspection, int column) {
   return {&result.plane, leader};
 }
 
+/// Returns H_i1 = K R_ciw (I - tau_i n^T) K^-1, undistorted.
+Eigen::Matrix3d homography_of(const Window& window, const Pose& pose, const Plane& plane) {
+  const Eigen::Vector3d tau = -pose.p_wc / plane.distance;
+  return window.K * pose.R_wc.transpose() *
+         (Eigen::Matrix3d::Identity() - tau * plane.normal.transpose()) * window.K.inverse();
+}
+
 /// Reads the tracks, not the window, which does not have the excluded ones.
 TrackFrame frame_of(const Inspection& inspection, int frame, int column, const TrackPlane& on) {
   const Tracks& tracks = *inspection.tracks;
@@ -164,26 +171,34 @@ std::string loss_of(const Tracks& tracks, int column) {
 
 }  // namespace
 
-Eigen::Matrix3d homography_of(const Window& window, const Pose& pose, const Plane& plane) {
-  const Eigen::Vector3d tau = -pose.p_wc / plane.distance;
-  return window.K * pose.R_wc.transpose() *
-         (Eigen::Matrix3d::Identity() - tau * plane.normal.transpose()) * window.K.inverse();
-}
-
-std::vector<double> residuals_px(const Inspection& inspection, int frame_in_window) {
+std::vector<ResidualVector> residual_vectors(const Inspection& inspection, int frame_in_window) {
   const Window& window = *inspection.window;
   const Initialization& result = *inspection.initialization;
   if (!result.ok) return {};
-  const auto H = homography_of(window, result.cameras[frame_in_window], result.plane);
-  std::vector<double> residuals;
-  for (int j = 0; j < window.track_count(); ++j) {
-    if (!window.inlier[frame_in_window][j]) continue;
-    const Eigen::Vector2d predicted =
-        distort(inspection.recording->camera, transfer(H, window.points_px[0].col(j)));
-    const double residual = (predicted - inspection.tracks->raw_px[frame_in_window].col(j)).norm();
-    if (std::isfinite(residual)) residuals.push_back(residual);
-  }
+  std::vector<ResidualVector> residuals;
+  const auto add = [&](const PlaneEstimate& on, const std::vector<std::vector<bool>>& inlier) {
+    const auto H = homography_of(window, result.cameras[frame_in_window], on.plane);
+    for (int track = 0; track < window.track_count(); ++track) {
+      if (!inlier[frame_in_window][track]) continue;
+      const Eigen::Vector2d predicted =
+          distort(inspection.recording->camera, transfer(H, window.points_px[0].col(track)));
+      const Eigen::Vector2d observed = inspection.tracks->raw_px[frame_in_window].col(track);
+      if (predicted.allFinite() && observed.allFinite())
+        residuals.push_back({track, on.number, observed, predicted});
+    }
+  };
+  add({window.leader, result.plane}, window.inlier);
+  for (const PlaneEstimate& estimate : result.planes)
+    if (estimate.number != window.leader) add(estimate, window.planes[estimate.number].inlier);
   return residuals;
+}
+
+std::vector<double> residuals_px(const Inspection& inspection, int frame_in_window) {
+  std::vector<double> lengths;
+  for (const ResidualVector& residual : residual_vectors(inspection, frame_in_window))
+    if (residual.plane == inspection.window->leader)
+      lengths.push_back((residual.predicted_px - residual.observed_px).norm());
+  return lengths;
 }
 
 TrackLife track_life(const Inspection& inspection, int column) {

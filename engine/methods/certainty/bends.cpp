@@ -236,18 +236,48 @@ std::vector<std::optional<Eigen::Matrix2d>> bends_of(const SolvedPlanes& solved,
   return bends;
 }
 
-void widen_gyro(const Window& window, double ratio, Uncertainty& u) {
-  const auto widened = [&](const auto& covariance, double prior_sigma) {
-    auto information = (covariance.inverse() / ratio).eval();
-    information.diagonal().array() += (1 - 1 / ratio) / (prior_sigma * prior_sigma);
-    return information.inverse().eval();
-  };
-  if (u.bias_covariance)
-    u.bias_covariance = widened(*u.bias_covariance, window.gyro->prior_sigma_rad_s);
-  if (auto& sigma_s = u.time_offset_sigma_s)
-    sigma_s = std::sqrt(
-        widened(Eigen::Matrix<double, 1, 1>(*sigma_s * *sigma_s), window.gyro->time_offset_sigma_s)
-            .value());
+void widen_by_systematic_errors(const SolvedPlanes& solved,
+                                double ratio,
+                                const SharedMoves& shared,
+                                Uncertainty& u) {
+  const auto& [Y, K] = shared;
+  const int gyro = static_cast<int>(Y.rows() - 2 - 3 * std::ssize(u.others));
+  const auto information = inverse_information(Y);
+  if (!(ratio > 1) || !information) return;
+  SharedMatrix wide = *information / ratio;
+  for (int k = 0; k < gyro; ++k) {
+    const GyroSensitivity& prior = *solved.window.gyro;
+    const double sigma = k < 3 ? prior.prior_sigma_rad_s : prior.time_offset_sigma_s;
+    wide(k, k) += (1 - 1 / ratio) / (sigma * sigma);
+  }
+  const auto widened = inverse_information(wide);
+  if (!widened) return;
+  const SharedMatrix by_shared = *widened - Y;
+  const Eigen::MatrixXd more = K * by_shared * K.transpose();
+  const Eigen::Index at = more.rows() - Y.rows();
+  Eigen::MatrixXd of_poses = Eigen::MatrixXd::Zero(2 * at, Y.cols());
+  for (int i = 1; i < solved.frame_count(); ++i) {
+    const Eigen::Index center = 3 * (Eigen::Index{i} - 1);
+    u.center_covariances[i] += more.block<3, 3>(center, center);
+    Eigen::VectorXd by = Eigen::VectorXd::Zero(more.rows());
+    by.segment<3>(center) = solved.motion.normal;
+    by.segment<2>(at + gyro) =
+        -(normal_tangents(solved.motion.normal).transpose() * solved.motion.tau[i]);
+    double& sigma = u.distance_ratio_sigmas[i];
+    sigma = std::sqrt(sigma * sigma + std::max(0.0, by.dot(more * by)));
+    of_poses.block(2 * center, 0, 3, gyro) = gyro_columns(solved.window, solved.motion, i, gyro);
+    of_poses.middleRows<3>(2 * center + 3) = K.middleRows<3>(center);
+  }
+  if (u.pose_covariance.size() > 0)
+    u.pose_covariance += of_poses * by_shared * of_poses.transpose();
+  if (gyro > 0) *u.bias_covariance += by_shared.topLeftCorner<3, 3>();
+  if (gyro > 3)
+    u.time_offset_sigma_s = std::sqrt(std::pow(*u.time_offset_sigma_s, 2) + by_shared(3, 3));
+  for (std::size_t k = 0; k < u.others.size(); ++k) {
+    const int distance = gyro + UnknownsLayout::of_plane(static_cast<int>(k) + 1) + 2;
+    double& sigma = u.others[k].log_distance_sigma;
+    sigma = std::sqrt(sigma * sigma + by_shared(distance, distance));
+  }
 }
 
 void add_bends(const SolvedPlanes& solved, Uncertainty& u) {
@@ -258,7 +288,13 @@ void add_bends(const SolvedPlanes& solved, Uncertainty& u) {
   };
   const Eigen::Matrix3d of_main = bend_along(0, solved.motion.normal);
   if (of_main.trace() > 0) u.bend_sigma_deg = degrees(std::sqrt(of_main.trace()));
-  widen_gyro(solved.window, 1 + of_main.trace() / u.normal_covariance.trace(), u);
+  const Eigen::Index size = u.joint_covariance.rows() - 3 * (solved.frame_count() - 1);
+  const SharedMatrix Y = u.joint_covariance.bottomRightCorner(size, size);
+  if (const auto information = inverse_information(Y))
+    widen_by_systematic_errors(solved,
+                               1 + of_main.trace() / u.normal_covariance.trace(),
+                               {Y, u.joint_covariance.rightCols(size) * *information},
+                               u);
   set_normal_covariance(u.normal_covariance + of_main, u);
   for (std::size_t k = 0; k < u.others.size(); ++k)
     u.others[k].normal_covariance += bend_along(k + 1, solved.motion.others[k].m.normalized());

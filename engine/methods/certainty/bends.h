@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "engine/methods/certainty/sandwich.h"
 #include "engine/methods/common/initialization.h"
 #include "engine/methods/plane/plane_motion.h"
 
@@ -19,9 +20,20 @@ namespace gpo {
 /// contribute. nullopt if the curvature is not significant. `sigma_px`: noise of a coordinate.
 std::vector<std::optional<Eigen::Matrix2d>> bends_of(const SolvedPlanes& solved, double sigma_px);
 
-/// Widens the covariances of bias and time offset by the ratio in which errors that neighboring
-/// tracks share and bends widen that of the normal, up to their priors (engine/method.md, eq. 14k).
-void widen_gyro(const Window& window, double ratio, Uncertainty& u);
+/// The unknowns that all frames share, in the order of `Uncertainty::joint_covariance`: gyroscope,
+/// then planes.
+struct SharedMoves {
+  SharedMatrix covariance;  ///< by noise
+  Eigen::MatrixXd results;  ///< d(rows of the joint covariance) / d(these unknowns)
+};
+
+/// Widens the covariances of centers, poses, bias, time offset and distances as errors that
+/// neighboring tracks share and bends widen the normal's variance by `ratio`: by the moves of the
+/// shared unknowns, up to their priors (engine/method.md, eq. 14k). The joint covariance stays.
+void widen_by_systematic_errors(const SolvedPlanes& solved,
+                                double ratio,
+                                const SharedMoves& shared,
+                                Uncertainty& u);
 
 /// Adds the variation of all normals over surfaces that are not flat.
 void add_bends(const SolvedPlanes& solved, Uncertainty& u);

@@ -56,21 +56,6 @@ WalkMoves walk_moves(const Sandwich& sandwich) {
   return walk;
 }
 
-/// Returns d(centers, gyroscope, planes) / d(shared): p_wc = -tau with tau_i + R_wci t, t = -gain
-/// x.
-Eigen::MatrixXd results_by_shared(const PlaneMotion& motion, const Bread& bread) {
-  const auto frames = std::ssize(motion.tau);
-  const int gyro = bread.layout.gyro;
-  const int of_planes = bread.layout.of_gyro();
-  Eigen::MatrixXd M =
-      Eigen::MatrixXd::Zero(3 * (frames - 1) + gyro + of_planes, bread.layout.size());
-  for (Eigen::Index i = 1; i < frames; ++i)
-    M.middleRows<3>(3 * (i - 1)) = motion.R_wc[i] * bread.frames[i].gain.bottomRows<3>();
-  M.block(3 * (frames - 1), of_planes, gyro, gyro).setIdentity();
-  M.bottomLeftCorner(of_planes, of_planes).setIdentity();
-  return M;
-}
-
 struct ResultMoves {
   Eigen::MatrixXd results;  ///< displacements of (centers, gyroscope, planes), in columns
   Eigen::MatrixXd shared;   ///< displacements of the shared unknowns
@@ -106,6 +91,20 @@ Eigen::MatrixXd spread_of_results(const PlaneMotion& motion,
 }
 
 }  // namespace
+
+// p_wc = -tau with tau_i + R_wci t, t = -gain x.
+Eigen::MatrixXd results_by_shared(const PlaneMotion& motion, const Bread& bread) {
+  const auto frames = std::ssize(motion.tau);
+  const int gyro = bread.layout.gyro;
+  const int of_planes = bread.layout.of_gyro();
+  Eigen::MatrixXd M =
+      Eigen::MatrixXd::Zero(3 * (frames - 1) + gyro + of_planes, bread.layout.size());
+  for (Eigen::Index i = 1; i < frames; ++i)
+    M.middleRows<3>(3 * (i - 1)) = motion.R_wc[i] * bread.frames[i].gain.bottomRows<3>();
+  M.block(3 * (frames - 1), of_planes, gyro, gyro).setIdentity();
+  M.bottomLeftCorner(of_planes, of_planes).setIdentity();
+  return M;
+}
 
 std::vector<SolutionMove> moves_by_gyro_noise(const Sandwich& sandwich) {
   std::vector<SolutionMove> moves;

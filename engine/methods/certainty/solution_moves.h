@@ -26,6 +26,9 @@ std::vector<SolutionMove> moves_by_lens(const Sandwich& sandwich, LensMoves move
 /// eq. 14f).
 void add_gyro_noise(const Sandwich& sandwich, Spread& spread);
 
+/// Returns d(centers but the first, gyroscope, planes) / d(shared unknowns).
+Eigen::MatrixXd results_by_shared(const PlaneMotion& motion, const Bread& bread);
+
 /// Returns the joint covariance of all camera centers but the first, the gyroscope bias if it is a
 /// shared unknown, and the planes (`Uncertainty::joint_covariance`): the shrunk sum over tracks,
 /// the sums over steps of the gyroscope's walk and over `of_image`, the moves by lens and readout,

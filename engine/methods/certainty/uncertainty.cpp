@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <set>
 #include <utility>
 #include <vector>
@@ -185,16 +186,32 @@ void add_plane_covariances(const SolvedPlanes& solved,
   }
 }
 
-/// Adds the covariances of bias and time offset; those of the normals are complete.
-void add_gyro(const Window& window,
-              const SharedMatrix& covariance,
-              const UnknownsLayout& layout,
-              Uncertainty& result) {
+double trace_of(const std::optional<Eigen::Matrix2d>& covariance) {
+  return covariance ? covariance->trace() : 0;
+}
+
+/// Adds the covariances of bias and time offset, if they are estimated.
+void add_gyro(const UnknownsLayout& layout, const SharedMatrix& covariance, Uncertainty& result) {
   const int gyro = layout.of_gyro();
+  if (result.rotations != RotationModel::bias) return;
   result.bias_covariance = covariance.block<3, 3>(gyro, gyro);
   if (layout.gyro > 3) result.time_offset_sigma_s = std::sqrt(covariance(gyro + 3, gyro + 3));
-  const double flat = covariance.topLeftCorner<2, 2>().trace();
-  widen_gyro(window, result.normal_covariance.trace() / flat, result);
+}
+
+/// `beyond`: variance of the normal by errors of neighbors and surfaces.
+void widen(const Sandwich& sandwich,
+           const SharedMatrix& by_noise,
+           double beyond,
+           Uncertainty& result) {
+  const auto& [solved, bread, inverse] = sandwich;
+  std::vector<int> order(bread.layout.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::rotate(order.begin(), order.begin() + bread.layout.of_gyro(), order.end());
+  widen_by_systematic_errors(
+      solved,
+      1 + beyond / by_noise.topLeftCorner<2, 2>().trace(),
+      {by_noise(order, order), results_by_shared(solved.motion, bread)(Eigen::all, order)},
+      result);
 }
 
 void add_bounds(const SolvedPlanes& solved, const Linearization& linearized, Uncertainty& result) {
@@ -224,6 +241,7 @@ std::optional<Uncertainty> uncertainty_of(const SolvedPlanes& solved,
   const double degrees_of_freedom = residuals / std::max(1.0, residuals - unknowns);
   const Influences influences = influences_of(sandwich);
   Spread spread = spread_of(sandwich, influences, degrees_of_freedom);
+  const SharedMatrix by_noise = spread.shared;
   Uncertainty result;
   result.sigma_px = sigma_px;
   result.rotations = model;
@@ -260,7 +278,8 @@ std::optional<Uncertainty> uncertainty_of(const SolvedPlanes& solved,
         joint_covariance(sandwich, influences, degrees_of_freedom, moves_of_image, spread.shared);
     result.joint_bias_rows = bread.layout.gyro;
   }
-  if (model == RotationModel::bias) add_gyro(window, spread.shared, bread.layout, result);
+  add_gyro(bread.layout, spread.shared, result);
+  widen(sandwich, by_noise, trace_of(neighbors[0]) + trace_of(bends[0]), result);
   add_bounds(solved, *linearized, result);
   return result;
 }

@@ -74,7 +74,8 @@ struct Uncertainty {
   /// Joint covariance of all p_wc but the first, stacked; then of the gyroscope bias (3 rows, if
   /// uncertain) and its time offset (1 row, if uncertain); then for each plane, main plane first,
   /// of the normal along `normal_tangents` (2 rows) and, except for the main plane, of log(1 /
-  /// distance). Empty if not computed.
+  /// distance). By noise and lens, without errors of neighbors and surfaces. Empty if not
+  /// computed.
   Eigen::MatrixXd joint_covariance;
   /// 3 if `joint_covariance` contains the bias, 4 if also the time offset.
   int joint_bias_rows = 0;

@@ -1,6 +1,7 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
 // Gravity and metric scale of a real flight, compared with motion capture, and of a rendered room.
+#include "engine/geometry/plane.h"
 #include "engine/geometry/statistics.h"
 #include "engine/inspection/inspector.h"
 #include "engine/inspection/report/report.h"
@@ -11,6 +12,7 @@
 #include <cmath>
 #include <memory>
 
+#include <Eigen/Cholesky>
 #include <gtest/gtest.h>
 
 namespace gpo {
@@ -96,6 +98,28 @@ TEST_P(InertialRoom, MovesPlanesWithinTheirUncertaintyIfJoint) {
       EXPECT_LT(angle_deg(a.plane.normal, b.plane.normal), 4 * sigma_deg);
       EXPECT_LT(b.rms_px, 1.1 * a.rms_px);
     }
+}
+
+// The floor of the real room is cluttered: with tracks as independent clusters the mean was 11.
+TEST_P(InertialRoom, CentersAreWithinTheirCovariances) {
+  double squares = 0;
+  int windows = 0;
+  for (int start = 0; start <= 40; start += 5) {
+    const auto inspection = inspected({.start = start, .frames = 20});
+    const Initialization& result = *inspection->initialization;
+    if (!result.ok) continue;
+    const WindowTruth& truth = *inspection->truth;
+    const Pose& first = *truth.cameras.front();
+    const double distance = std::abs(plane_in_camera(*truth.plane, first).distance);
+    const Eigen::Vector3d center =
+        first.R_wc.transpose() * (truth.cameras.back()->p_wc - first.p_wc) / distance;
+    const Eigen::Vector3d error = result.cameras.back().p_wc - center;
+    const Eigen::Matrix3d& covariance = result.uncertainty->center_covariances.back();
+    squares += error.dot(covariance.ldlt().solve(error)) / 3;
+    ++windows;
+  }
+  ASSERT_GT(windows, 7);
+  EXPECT_LT(squares / windows, 3);
 }
 
 // The uncertainty of other methods is not that of the problem that they solved.

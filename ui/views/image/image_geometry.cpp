@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ui/views/image/image_geometry.h"
 
-#include "engine/geometry/homography.h"
 #include "engine/inspection/studies/studies.h"
 #include "engine/window/tracks.h"
 
@@ -364,29 +363,6 @@ Outlines horizon_in_image(const Camera& camera, const Pose& pose, const Vector3d
   }
   std::erase_if(pieces, [](const Outline& piece) { return piece.size() < 2; });
   return pieces;
-}
-
-std::vector<ResidualVector> residual_vectors(const Inspection& inspection, int frame) {
-  const Window& window = *inspection.window;
-  const Initialization& result = *inspection.initialization;
-  if (!result.ok) return {};
-  std::vector<ResidualVector> residuals;
-  const auto add = [&](const Plane& plane, const std::vector<std::vector<bool>>& inlier) {
-    const Eigen::Matrix3d H = homography_of(window, result.cameras[frame], plane);
-    for (int track = 0; track < window.track_count(); ++track) {
-      if (!inlier[frame][track]) continue;
-      const Vector2d predicted =
-          distort(inspection.recording->camera, transfer(H, window.points_px[0].col(track)));
-      const Vector2d observed = inspection.tracks->raw_px[frame].col(track);
-      if (predicted.allFinite() && observed.allFinite())
-        residuals.push_back({track, observed, predicted});
-    }
-  };
-  add(result.plane, window.inlier);
-  for (const PlaneEstimate& estimate : result.planes)
-    if (estimate.number != window.leader)
-      add(estimate.plane, window.planes[estimate.number].inlier);
-  return residuals;
 }
 
 std::vector<Occluder> occluders(const Inspection& inspection,

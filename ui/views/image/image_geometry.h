@@ -84,17 +84,6 @@ Outlines contact_shadow(const Inspection& inspection, int frame, double side);
 /// Returns the pieces of the horizon in the image, bent by the lens. `up_w` has any length.
 Outlines horizon_in_image(const Camera& camera, const Pose& pose, const Vector3d& up_w);
 
-/// Observation of a track, and its prediction from plane, poses and the reference frame [raw px].
-struct ResidualVector {
-  int track;
-  Vector2d observed_px;
-  Vector2d predicted_px;
-};
-
-/// Returns the residuals of all planes' inliers through H_i1 = K R_ciw (I - tau_i n^T) K^-1, each
-/// by its own plane; empty if the initialization failed.
-std::vector<ResidualVector> residual_vectors(const Inspection& inspection, int frame);
-
 using Triangle = std::array<Vector2d, 3>;
 
 /// Parts of an image that are nearer to the camera than the cube.
