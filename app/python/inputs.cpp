@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <array>
+#include <span>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -44,8 +45,11 @@ std::vector<std::int64_t> ids_of(const py::object& given) {
     throw InputError(
         fmt::format("ids: expected integers, found {}", std::string(py::str(any.dtype()))));
   if (any.shape(0) != any.size()) throw InputError(kFrameShape);
-  const auto ids = cast<Ids>(any, kFrameShape);
-  return {ids.data(), ids.data() + ids.size()};
+  const auto array = cast<Ids>(any, kFrameShape);
+  const std::span ids(array.data(), static_cast<std::size_t>(array.size()));
+  if (kind == 'u' && std::ranges::any_of(ids, [](std::int64_t id) { return id < 0; }))
+    throw InputError("ids: expected integers below 2^63");
+  return {ids.begin(), ids.end()};
 }
 
 constexpr const char* kLever = "p_gyro_camera_m";

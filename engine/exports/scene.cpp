@@ -141,7 +141,7 @@ std::string counted_of(std::size_t count, const char* one, const char* many) {
 }  // namespace
 
 std::uint32_t plane_rgb(int plane) {
-  constexpr std::array<std::uint32_t, 4> kOthers{0xE69F00, 0xCC79A7, 0x4A7FD0, 0xB59B3C};
+  constexpr std::array<std::uint32_t, 4> kOthers{0xB49CFF, 0xCC79A7, 0x4A7FD0, 0x7450E5};
   return plane == 0 ? 0x1FCB93 : kOthers[(plane - 1) % kOthers.size()];
 }
 

@@ -183,6 +183,16 @@ TEST_F(LiveHostTest, FreezesWhenTheSourceEnds) {
   EXPECT_TRUE(is_frozen(state_));
 }
 
+TEST_F(LiveHostTest, PlaysAVideoThatEnded) {
+  state_.requests.live = "desk.mp4";
+  show_until(1);
+  shown_ns_ = 3'600'000'000'000;
+  pump_until([&] { return !state_.live; });
+  settle();
+  EXPECT_THAT(state_.messages.text, HasSubstr(". Space plays, save-recording"));
+  EXPECT_EQ(action_of_character(U' ', &state_)->name, "play");
+}
+
 TEST_F(LiveHostTest, OpensARecordingInPlaceOfTheSource) {
   open_live();
   show_until(1);

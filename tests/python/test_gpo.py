@@ -372,6 +372,7 @@ def test_two_points_set_the_scale():
         (lambda: gpo.Camera([[500, 1, 0], [0, 500, 0], [0, 0, 1]]), "pixels have no skew"),
         (lambda: gpo.Camera(np.eye(3), distortion=[0.1, 0, 0]), "found 3 coefficients, radial-tangential has 2, 4"),
         (lambda: gpo.initialize(np.eye(3), [(0, [1.5], [[1, 2]])]), "frame 0: ids: expected integers, found float64"),
+        (lambda: gpo.initialize(np.eye(3), [(0, [2**63], [[1, 2]])]), r"frame 0: ids: expected integers below 2\^63"),
         (lambda: gpo.initialize(np.eye(3), [], {"R_gyro_cam": np.eye(3)}), "gyroscope: unknown key 'R_gyro_cam'"),
         (lambda: gpo.evaluate([DESK], ransac_threshold_px=3), "ransac_threshold_px: evaluate does not take it"),
         (lambda: gpo.evaluate([DESK], speed=3), "speed"),

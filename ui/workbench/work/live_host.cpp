@@ -3,6 +3,7 @@
 #include "ui/workbench/work/live_host.h"
 
 #include "engine/base/error.h"
+#include "engine/recording/live/sources.h"
 
 #include <utility>
 
@@ -86,7 +87,9 @@ void LiveHost::freeze(WorkbenchState& state, WorkerLink& link, Worker& worker) {
   session_.reset();
   state.live.reset();
   end_ = last.capture;
-  if (frozen) state.live_source = address_;
+  // A video that ended has nothing to continue with; Space plays what is frozen.
+  const bool over = end_.state == CaptureState::ended && !is_live_address(address_);
+  if (frozen) state.live_source = over ? "" : address_;
   if (!end_.is_over()) end_.message.clear();
   if (!frozen) {
     const bool failed = end_.state == CaptureState::failed;
@@ -106,9 +109,10 @@ void LiveHost::report_frozen(WorkbenchState& state) {
   if (!reported_ || state.document.recording != reported_) return;
   const std::string why = end_.message.empty() ? "" : end_.message + ". ";
   say(state,
-      fmt::format("{}Frozen: {}. Space continues, save-recording saves the recording",
+      fmt::format("{}Frozen: {}. Space {}, save-recording saves the recording",
                   why,
-                  counted(reported_->frame_count(), "frame")),
+                  counted(reported_->frame_count(), "frame"),
+                  is_frozen(state) ? "continues" : "plays"),
       end_.state == CaptureState::failed ? Severity::error : Severity::note);
   reported_.reset();
 }
