@@ -146,7 +146,8 @@ TEST(ImageGeometry, TracksOfAFurtherPlaneHaveTheResidualsOfTheirPlane) {
   const std::size_t all = residual_vectors(inspection, 12).size();
   Window window = *inspection.window;
   Initialization result = *inspection.initialization;
-  window.planes.assign(2, {.inlier = window.inlier});
+  window.planes.resize(2);
+  for (WindowPlane& plane : window.planes) plane.inlier = window.inlier;
   for (std::vector<bool>& inlier : window.inlier)
     for (std::size_t track = 0; track < inlier.size(); ++track)
       if (track % 3 == 0) inlier[track] = false;
