@@ -6,6 +6,7 @@
 #include "engine/exports/foxglove_schemas.h"
 #include "engine/exports/scene.h"
 #include "engine/files/image_codec.h"
+#include "engine/inspection/studies/studies.h"
 #include "engine/recording/bags/messages.h"
 #include "engine/recording/images/images.h"
 
@@ -119,12 +120,13 @@ ordered_json annotations_json(const Inspection& inspection, int frame) {
     if (!tracks.seen(frame, j) || is_excluded(inspection, j)) continue;
     const Eigen::Vector2d at = tracks.raw_px[frame].col(j);
     const auto plane = plane_of_track(*inspection.window, frame, j);
-    circles.push_back({{"timestamp", time_json(inspection.window->timestamps_ns[frame])},
-                       {"position", {{"x", at.x()}, {"y", at.y()}}},
-                       {"diameter", diameter},
-                       {"thickness", diameter / 4},
-                       {"fill_color", color_json(0, 0)},
-                       {"outline_color", color_json(plane ? plane_rgb(*plane) : kOutlierRgb, 1)}});
+    circles.push_back(
+        {{"timestamp", time_json(inspection.window->timestamps_ns[frame])},
+         {"position", {{"x", at.x()}, {"y", at.y()}}},
+         {"diameter", diameter},
+         {"thickness", diameter / 4},
+         {"fill_color", color_json(0, 0)},
+         {"outline_color", color_json(plane ? plane_color(*plane) : kOutlierRgb, 1)}});
   }
   return {
       {"circles", circles}, {"points", ordered_json::array()}, {"texts", ordered_json::array()}};
@@ -191,7 +193,7 @@ class Entities {
     ordered_json made = entity(fmt::format("cube on plane {}", cube.plane + 1));
     made["cubes"].push_back({{"pose", pose_json(cube.axes, cube.center)},
                              {"size", vector_json(Vector3d::Constant(cube.side))},
-                             {"color", color_json(plane_rgb(cube.plane), 0.5)}});
+                             {"color", color_json(plane_color(cube.plane), 0.5)}});
     return made;
   }
 
@@ -202,7 +204,7 @@ class Entities {
     for (const ScenePoint& point : scene_.points)
       made["spheres"].push_back({{"pose", pose_json(Eigen::Matrix3d::Identity(), point.position)},
                                  {"size", vector_json(Vector3d::Constant(diameter))},
-                                 {"color", color_json(plane_rgb(point.plane), 1)}});
+                                 {"color", color_json(plane_color(point.plane), 1)}});
     return made;
   }
 

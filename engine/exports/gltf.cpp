@@ -6,6 +6,7 @@
 #include "engine/exports/glb.h"
 #include "engine/exports/scene.h"
 #include "engine/files/image_codec.h"
+#include "engine/inspection/studies/studies.h"
 #include "engine/recording/layouts/write_recording.h"
 
 #include <algorithm>
@@ -169,7 +170,7 @@ class SceneFile {
                                              2, 3, 7, 2, 7, 6, 0, 2, 6, 0, 6, 4, 1, 5, 7, 1, 7, 3};
       const std::vector<std::uint16_t> edges{0, 1, 2, 3, 4, 5, 6, 7, 0, 2, 1, 3,
                                              4, 6, 5, 7, 0, 4, 1, 5, 2, 6, 3, 7};
-      const std::uint32_t rgb = plane_rgb(cube.plane);
+      const std::uint32_t rgb = plane_color(cube.plane);
       const ordered_json attributes{{"POSITION", positions}};
       const std::string name = fmt::format("cube on plane {}", cube.plane + 1);
       ordered_json solid{{"attributes", attributes},

@@ -80,7 +80,7 @@ void add_plane(ExportScene& scene, int number, const Plane& plane) {
   ScenePlane added{.number = number,
                    .title = plane_title(scene.inspection, number),
                    .normal = T.R_ab * plane.normal,
-                   .rgb = plane_rgb(number)};
+                   .rgb = plane_color(number)};
   const SceneCube* cube = cube_on(scene, number);
   const Vector3d rows =
       cube != nullptr ? Vector3d(cube->axes.col(0)) : Vector3d(scene.cameras.front().R_wc.col(0));
@@ -139,11 +139,6 @@ std::string counted_of(std::size_t count, const char* one, const char* many) {
 }
 
 }  // namespace
-
-std::uint32_t plane_rgb(int plane) {
-  constexpr std::array<std::uint32_t, 4> kOthers{0xB49CFF, 0xCC79A7, 0x4A7FD0, 0x7450E5};
-  return plane == 0 ? 0x1FCB93 : kOthers[(plane - 1) % kOthers.size()];
-}
 
 ExportScene export_scene(const Inspection& inspection, const ExportChoices& choices) {
   const Initialization& result = *inspection.initialization;

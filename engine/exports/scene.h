@@ -68,8 +68,7 @@ struct ExportScene {
   ExportNotes left_out = {};
 };
 
-/// Colors of tracks as in the window: inliers by their plane, outliers.
-std::uint32_t plane_rgb(int plane);
+/// Outliers have this color, as in the window; inliers have that of their plane.
 inline constexpr std::uint32_t kOutlierRgb = 0xF0503C;
 
 /// Throws InputError if the initialization failed or a requested scale or world is unknown.

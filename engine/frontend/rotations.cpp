@@ -196,6 +196,7 @@ Rotations sensitive_gyro_rotations(const Gyroscope& gyroscope,
     constexpr std::int64_t kHalf_ns = 10'000'000;
     const std::int64_t from_ns = std::max(t_ns - kHalf_ns, gyroscope.timestamps_ns.front());
     const std::int64_t to_ns = std::min(t_ns + kHalf_ns, gyroscope.timestamps_ns.back());
+    if (to_ns <= from_ns) return Vector3d::Zero();  // beyond the samples the rate is constant
     return (rate(to_ns) - rate(from_ns)) / (1e-9 * static_cast<double>(to_ns - from_ns));
   };
   const Vector3d first_rate = rate(times_ns.front());

@@ -30,17 +30,24 @@ void add_planes(const Window& window, Initialization& result) {
     result.planes.push_back({number, {m.normalized(), result.plane.distance / m.norm()}});
 }
 
-/// Completes the reason of a verdict: by the uncertainty with an exact lens, or if it is weak by
-/// the main cause, if that is the lens, the clock, the surface or the camera model.
+/// Completes the reason of a verdict: by the uncertainty with an exact lens, or if it is not ready
+/// by a late clock as the main cause, or if it is weak by the lens, the surface or the camera
+/// model.
 void explain(const Uncertainty& u, Lens lens, Verdict& verdict) {
   constexpr double kMainShare = 0.7;  // about half of the variance
   const double sigma_deg = normal_sigma_deg(u, lens);
   if (verdict.readiness == Readiness::ready && sigma_deg > u.normal_sigma_deg)
     verdict.reason += fmt::format("; {:.2f} deg if the lens is exact", u.normal_sigma_deg);
-  if (verdict.readiness != Readiness::weak) return;
   const auto is_main = [&](const std::optional<double>& part_deg) {
     return part_deg && *part_deg >= kMainShare * sigma_deg;
   };
+  if (verdict.readiness != Readiness::ready && is_main(u.clock_sigma_deg)) {
+    verdict.reason = fmt::format(
+        "the clock of the gyroscope is about {:+.0f} ms off: use gpo_joint, or calibrate it",
+        1e3 * *u.late_s);
+    return;
+  }
+  if (verdict.readiness != Readiness::weak) return;
   if (u.normal_sigma_deg < kMainShare * sigma_deg &&
       verdict.largest_translation > kReadyTranslation)
     verdict.reason = fmt::format(
@@ -48,10 +55,6 @@ void explain(const Uncertainty& u, Lens lens, Verdict& verdict) {
         "exact lens): calibrate the camera",
         sigma_deg,
         u.normal_sigma_deg);
-  else if (is_main(u.clock_sigma_deg))
-    verdict.reason = fmt::format(
-        "the clock of the gyroscope is about {:+.0f} ms off: use gpo_joint, or calibrate it",
-        1e3 * *u.late_s);
   else if (is_main(u.bend_sigma_deg))
     verdict.reason =
         fmt::format("uneven surface or lens error: the normal varies by {:.2f} deg over the plane",

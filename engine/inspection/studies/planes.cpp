@@ -5,7 +5,9 @@
 #include "engine/methods/candidates/homography_candidates.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdint>
 #include <utility>
 
 #include <Eigen/LU>
@@ -128,6 +130,12 @@ std::optional<PlaneName> plane_name(const Inspection& inspection, int number) {
 std::string plane_title(const Inspection& inspection, int number) {
   const auto found = plane_name(inspection, number);
   return fmt::format("plane {}{}", number + 1, found ? " (" + found->name + ")" : "");
+}
+
+// They are green, lavender, reddish purple, blue and violet, which color-blind people distinguish.
+std::uint32_t plane_color(int number) {
+  constexpr std::array<std::uint32_t, 4> kOthers{0xB49CFF, 0xCC79A7, 0x4A7FD0, 0x7450E5};
+  return number == 0 ? 0x1FCB93 : kOthers[(number - 1) % kOthers.size()];
 }
 
 std::vector<PlanePatch> plane_patches(const Inspection& inspection) {

@@ -26,6 +26,11 @@ std::optional<PlaneName> plane_name(const Inspection& inspection, int number);
 /// Returns "plane 2 (wall)", or "plane 2" without a name.
 std::string plane_title(const Inspection& inspection, int number);
 
+/// Returns the color of a plane and its inliers, 0xRRGGBB, in views and exports. It does not depend
+/// on which plane leads: planes are numbered by their support. No verdict has the color of a plane
+/// but the first.
+std::uint32_t plane_color(int number);
+
 /// Extent of a plane other than the leading one, in the estimate's world.
 struct PlanePatch {
   int number = 0;  ///< plane number in the window

@@ -127,6 +127,38 @@ TEST(GyroSensitivity, MatchesDifferenceQuotients) {
   }
 }
 
+// Angular accelerations reach 20 rad/s^2.
+TEST(GyroSensitivity, PredictsClocksThatAreTenMillisecondsLateToSecondOrder) {
+  constexpr double kLate_s = 0.01;
+  for (std::uint64_t seed = 1; seed <= 10; ++seed) {
+    Gyroscope gyroscope = varying_rate(seed);
+    const Rotations now = sensitive_gyro_rotations(gyroscope, thirty_times());
+    gyroscope.time_offset_ns += std::llround(1e9 * kLate_s);
+    const auto late = gyro_rotations(gyroscope, thirty_times());
+    double first_order = 0, second_order = 0;
+    for (std::size_t i = 1; i < late.size(); ++i) {
+      const Vector3d change = so3_log(now.R_wc[i].transpose() * late[i]);
+      const Vector3d predicted = kLate_s * now.gyro->d_offset[i];
+      const Vector3d curve = 0.5 * kLate_s * kLate_s * now.gyro->d2_offset[i];
+      first_order += (change - predicted).norm();
+      second_order += (change - predicted - curve).norm();
+    }
+    EXPECT_LT(second_order, 0.2 * first_order) << seed;
+  }
+}
+
+/// The first frame may be before the first sample, by up to 1.5 periods.
+TEST(GyroSensitivity, IsFiniteBeyondTheSamples) {
+  Gyroscope gyroscope = constant_rate(Vector3d(0.1, 0.2, 0.3));
+  for (std::int64_t& t : gyroscope.timestamps_ns) t = 1'000'000'000 + 4 * (t - 1'000'000'000);
+  for (const std::int64_t before_ns : {0, 5'000'000, 10'000'000, 20'000'000}) {
+    const std::int64_t first_ns = gyroscope.timestamps_ns.front() - before_ns;
+    const std::vector times{first_ns, first_ns + 500'000'000};
+    for (const Vector3d& d2 : sensitive_gyro_rotations(gyroscope, times).gyro->d2_offset)
+      EXPECT_TRUE(d2.allFinite()) << before_ns;
+  }
+}
+
 TEST(GyroSensitivity, HasBiasPriorAndNoise) {
   Gyroscope gyroscope = constant_rate(Vector3d(0.1, 0.2, 0.3));
   gyroscope.bias_rad_s = Vector3d(0.01, 0.02, -0.03);

@@ -1,5 +1,6 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
+#include "engine/inspection/studies/studies.h"
 #include "engine/methods/methods.h"
 #include "ui/look/look.h"
 #include "ui/views/overlay/overlay.h"

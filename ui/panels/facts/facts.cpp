@@ -272,12 +272,14 @@ ResultGroup uncertainty_group(const Inspection& inspection) {
   for (int axis = 0; result.bias_rad_s && axis < 3; ++axis)
     group.rows.push_back(bias_row(result, axis));
   if (result.time_offset_s)
-    group.rows.push_back({.label = "Time offset",
-                          .value = uncertain_text(1e3 * *result.time_offset_s,
-                                                  1e3 * u.time_offset_sigma_s.value_or(0)) +
-                                   " ms",
-                          .tooltip = "Estimated offset, with its standard deviation: gyroscope "
-                                     "time = camera time + offset"});
+    group.rows.push_back(
+        {.label = "Time offset",
+         .value =
+             u.time_offset_sigma_s
+                 ? uncertain_text(1e3 * *result.time_offset_s, 1e3 * *u.time_offset_sigma_s) + " ms"
+                 : milliseconds_text(1e3 * *result.time_offset_s),
+         .tooltip = "Estimated offset, with its standard deviation: gyroscope "
+                    "time = camera time + offset"});
   group.rows.push_back(bound_row(
       "Bound, known rotations", u.bound_known_rotations_deg, "if the rotations are exact", why));
   group.rows.push_back(

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ui/panels/timeline/timeline_bars.h"
 
+#include "engine/inspection/studies/studies.h"
+
 #include <algorithm>
 #include <cmath>
 

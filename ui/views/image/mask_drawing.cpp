@@ -3,6 +3,7 @@
 #include "ui/views/image/mask_drawing.h"
 
 #include "engine/inspection/settings/settings_table.h"
+#include "engine/inspection/studies/studies.h"
 
 #include <algorithm>
 #include <array>

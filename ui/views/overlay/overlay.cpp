@@ -27,10 +27,6 @@ void draw_ground(const Area& area, std::uint32_t frame_rgb) {
   area.list.AddRect(low, high, imgui_color(frame_rgb, 0.9), 5 * s, 0, s);
 }
 
-/// Lavender, reddish purple, blue, violet: no verdict has them, and color-blind people distinguish
-/// all of them.
-constexpr std::array<std::uint32_t, 4> kOtherPlanes = {0xB49CFF, 0xCC79A7, 0x4A7FD0, 0x7450E5};
-
 }  // namespace
 
 float overlay_scale() { return font(Font::regular)->FontSize / kFontSize; }
@@ -289,10 +285,6 @@ std::vector<std::pair<Vector2d, Vector2d>> dashes_along(std::span<const Vector2d
     }
   }
   return dashes;
-}
-
-std::uint32_t plane_color(int plane) {
-  return plane == 0 ? color_of(Role::inlier) : kOtherPlanes[(plane - 1) % kOtherPlanes.size()];
 }
 
 std::vector<int> other_planes(const Window& window) {

@@ -117,10 +117,6 @@ std::string fitting_text(Font which, std::initializer_list<std::string> texts, d
 std::vector<std::pair<Vector2d, Vector2d>> dashes_along(std::span<const Vector2d> line,
                                                         std::span<const double> pattern);
 
-/// Returns a color that does not depend on which plane leads: the inliers' for the plane with most
-/// tracks, others by order of support.
-std::uint32_t plane_color(int plane);
-
 /// Returns the numbers of the window's planes except the leading one.
 std::vector<int> other_planes(const Window& window);
 
