@@ -242,8 +242,9 @@ void widen_by_systematic_errors(const SolvedPlanes& solved,
                                 Uncertainty& u) {
   const auto& [Y, K] = shared;
   const int gyro = static_cast<int>(Y.rows() - 2 - 3 * std::ssize(u.others));
+  if (!(ratio > 1)) return;
   const auto information = inverse_information(Y);
-  if (!(ratio > 1) || !information) return;
+  if (!information) return;
   SharedMatrix wide = *information / ratio;
   for (int k = 0; k < gyro; ++k) {
     const GyroSensitivity& prior = *solved.window.gyro;

@@ -14,8 +14,8 @@
 
 namespace gpo {
 
-/// Information about the normal (tangents u) and, with an unknown bias, the bias, with translations
-/// and free rotations marginalized, per square pixel of noise.
+/// Information about the normal (tangents u) and, with an unknown bias, bias and time offset, with
+/// translations and free rotations marginalized, per square pixel of noise.
 using SharedInformation = Eigen::MatrixXd;
 
 /// Returns the information of the prior.

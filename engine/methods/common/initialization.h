@@ -89,7 +89,8 @@ struct Uncertainty {
   std::optional<double> row_delay_sigma_s;         ///< if it was an unknown
   /// Cramér-Rao bounds of the normal's angle [deg] at this solution.
   std::optional<double> bound_known_rotations_deg;
-  std::optional<double> bound_unknown_bias_deg;  ///< with a gyroscope only
+  /// With a gyroscope only; its time offset is unknown, too, unless it is exact.
+  std::optional<double> bound_unknown_bias_deg;
 };
 
 /// Sets the normal's covariance and standard deviations; the lens keeps its contribution.

@@ -285,7 +285,7 @@ ResultGroup uncertainty_group(const Inspection& inspection) {
   group.rows.push_back(
       bound_row("Bound, unknown bias",
                 u.bound_unknown_bias_deg,
-                "if a constant gyroscope bias is estimated, too",
+                "if a constant bias and the clock of the gyroscope are estimated, too",
                 result.uncertainty ? "Unknown: it needs rotations from a gyroscope" : why));
   return group;
 }
