@@ -240,6 +240,20 @@ std::string_view csv_cell(const CsvTable& table, const CsvRow& row, int column) 
   return take_cell(rest, table.separator);
 }
 
+bool is_measured(const CsvTable& table, const CsvRow& row, int first, int count) {
+  for (int column = first; column < first + count; ++column)
+    if (is_not_finite(csv_cell(table, row, column))) return false;
+  return true;
+}
+
+int drop_unmeasured(CsvTable& table, int first, int count) {
+  const int line = table.rows.front().line;
+  const auto dropped = std::erase_if(
+      table.rows, [&](const CsvRow& row) { return !is_measured(table, row, first, count); });
+  if (table.rows.empty()) csv_fail(table, line, "no row of finite numbers", "some");
+  return static_cast<int>(dropped);
+}
+
 double csv_number(const CsvTable& table, const CsvRow& row, int column) {
   const std::string_view cell = csv_cell(table, row, column);
   const auto value = parse_number(cell);

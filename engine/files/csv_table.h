@@ -45,6 +45,11 @@ CsvTable read_csv(const fs::path& file,
                   Separator separator = Separator::comma);
 
 std::string_view csv_cell(const CsvTable& table, const CsvRow& row, int column);
+/// Returns whether no number of `count` columns from `first` on is "nan" or infinite, as of what
+/// was not measured.
+bool is_measured(const CsvTable& table, const CsvRow& row, int first, int count);
+/// Removes the other rows and returns how many. Throws InputError if no row is left.
+int drop_unmeasured(CsvTable& table, int first, int count);
 /// Returns the finite number in a cell. Throws InputError with file and line.
 double csv_number(const CsvTable& table, const CsvRow& row, int column);
 std::int64_t csv_integer(const CsvTable& table, const CsvRow& row, int column);

@@ -136,6 +136,12 @@ std::optional<double> parse_number(std::string_view text) {
   return value && std::isfinite(*value) ? value : std::nullopt;
 }
 
+bool is_not_finite(std::string_view word) {
+  std::string name = lower_case(word);
+  if (name.starts_with('-') || name.starts_with('+')) name.erase(0, 1);
+  return name.starts_with("nan") || name == "inf" || name == "infinity" || name.starts_with("1.#");
+}
+
 std::optional<std::int64_t> parse_integer(std::string_view text) {
   return parse_whole<std::int64_t>(text);
 }

@@ -50,6 +50,9 @@ class TextLines {
 
 /// Parses a finite number. Returns nullopt if the text has anything else.
 std::optional<double> parse_number(std::string_view text);
+/// Returns whether a word is a number that is not finite, as printf writes it: "-nan", "inf",
+/// "-1.#IND", "nan(ind)".
+bool is_not_finite(std::string_view word);
 std::optional<std::int64_t> parse_integer(std::string_view text);
 /// Parses two integers, width and height or columns and rows: "640x480".
 std::optional<std::pair<int, int>> parse_size(std::string_view text);

@@ -42,6 +42,7 @@ struct ResultPoses {
   std::vector<std::string> names = {};      ///< by name: one image per pose, with '/'
   std::vector<Pose> poses;                  ///< world from camera, or from body
   int repeats = 0;                          ///< rows left out, with the time of the row before
+  int unmeasured = 0;                       ///< rows left out, not finite
 };
 
 /// TUM, EuRoC, VINS-Mono, KITTI, or COLMAP's images.txt, images.bin or folder. Throws InputError.

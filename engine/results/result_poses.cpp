@@ -51,6 +51,7 @@ int drop_repeats(CsvTable& table) {
 ResultPoses by_time(CsvTable table, TimeUnit unit, const std::array<int, 4>& quaternion) {
   ResultPoses result;
   result.repeats = drop_repeats(table);
+  result.unmeasured = drop_unmeasured(table, 1, 7);
   result.timestamps_ns = csv_time_stamps(table, unit);
   for (const CsvRow& row : table.rows) result.poses.push_back(csv_pose(table, row, 1, quaternion));
   return result;

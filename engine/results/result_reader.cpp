@@ -216,12 +216,15 @@ class Reader {
   void report(const ResultCameras& found, const Window& window, bool plane_of_points) {
     const ResultCoverage covered = coverage_of(found.cameras);
     report(fmt::format(
-        "{}, {} poses{}{}; {} of the window's {} frames{}{}{}; plane through {}",
+        "{}, {} poses{}{}{}; {} of the window's {} frames{}{}{}; plane through {}",
         poses_.layout,
         to_string(frame_),
         frame_ == PosedFrame::body ? ", with T_BS" : "",
         poses_.repeats > 0 ? fmt::format(", {} left out", counted(poses_.repeats, "repeated row"))
                            : "",
+        poses_.unmeasured > 0
+            ? fmt::format(", {} without a pose left out", counted(poses_.unmeasured, "row"))
+            : "",
         covered.count,
         window.frame_count(),
         found.interpolated > 0 ? fmt::format(" ({} interpolated)", found.interpolated) : "",

@@ -27,6 +27,7 @@ struct Gyroscope {
   Eigen::Vector3d bias_rad_s = Eigen::Vector3d::Zero();
   double bias_sigma_rad_s = kUnknownBiasSigma_rad_s;  ///< each axis
   double noise_density = 3e-4;             ///< white noise [rad/s/sqrt(Hz)]; default: a phone
+  int unmeasured = 0;                      ///< samples of the file that are not finite, left out
   bool bias_known = false;                 ///< read from a file
   std::string bias_source = "none: zero";  ///< for people
 };

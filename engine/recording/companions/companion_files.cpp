@@ -4,7 +4,6 @@
 
 #include "engine/base/limits.h"
 #include "engine/files/text_file.h"
-#include "engine/recording/board/board.h"
 #include "engine/window/timestamps.h"
 
 #include <algorithm>
@@ -28,11 +27,10 @@ double rad_s_per_unit(const CsvTable& table) {
 constexpr int kBiasColumn = 11;  // columns: t, p (3), q (4), v (3), b_w (3), b_a (3)
 constexpr int kColumnsWithBias = 17;
 constexpr double kMostSeconds = 1e6;
-constexpr const char* kCorners = "a number of inner corners";
-constexpr const char* kTags = "a number of tags";
 
-PosePath path_of(const CsvTable& table, TimeUnit unit, const std::array<int, 4>& quaternion) {
+PosePath path_of(CsvTable table, TimeUnit unit, const std::array<int, 4>& quaternion) {
   PosePath path;
+  path.unmeasured = drop_unmeasured(table, 1, 7);
   path.timestamps_ns = csv_time_stamps(table, unit);
   path.longest_gap_ns = usual_longest_gap_ns(path.timestamps_ns);
   for (const auto& row : table.rows) path.poses.push_back(csv_pose(table, row, 1, quaternion));
@@ -42,9 +40,14 @@ PosePath path_of(const CsvTable& table, TimeUnit unit, const std::array<int, 4>&
 std::optional<Eigen::Vector3d> mean_bias(const CsvTable& table) {
   if (table.columns != kColumnsWithBias) return std::nullopt;
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-  for (const auto& row : table.rows)
+  int count = 0;
+  for (const auto& row : table.rows) {
+    if (!is_measured(table, row, kBiasColumn, 3)) continue;
     for (int i = 0; i < 3; ++i) sum[i] += csv_number(table, row, kBiasColumn + i);
-  return sum / static_cast<double>(table.rows.size());
+    ++count;
+  }
+  if (count == 0) return std::nullopt;
+  return sum / count;
 }
 
 std::optional<std::int64_t> nanoseconds(const YamlEntry& root, const std::string& key) {
@@ -54,100 +57,6 @@ std::optional<std::int64_t> nanoseconds(const YamlEntry& root, const std::string
   if (std::abs(seconds) > kMostSeconds) yaml_fail(*entry, "seconds, at most 1e6");
   return std::llround(seconds * 1e9);
 }
-
-int whole_number(const YamlEntry& entry, int least, int most, const std::string& meaning) {
-  const std::string expected = fmt::format("{}, {} to {}", meaning, least, most);
-  const std::int64_t number = integer(entry, expected);
-  if (number < least || number > most) yaml_fail(entry, expected);
-  return static_cast<int>(number);
-}
-
-int corner_count(const YamlEntry& root, const std::string& key) {
-  return whole_number(at(root, key, kCorners), 3, 100, kCorners);
-}
-
-int tag_count(const YamlEntry& root, const std::string& key) {
-  return whole_number(at(root, key, kTags), 1, 50, kTags);
-}
-
-double length_m(const YamlEntry& root, const std::string& key, const std::string& expected) {
-  const auto entry = at(root, key, expected);
-  const double length = number(entry, expected);
-  if (length <= 0) yaml_fail(entry, text(entry, ""), fmt::format("{}, > 0", expected));
-  return length;
-}
-
-double square_side(const YamlEntry& root) {
-  return length_m(root, "square", "the side of a square in meters");
-}
-
-Board chessboard(const YamlEntry& root) {
-  return {corner_count(root, "columns"), corner_count(root, "rows"), square_side(root)};
-}
-
-/// `squares` is the number of squares, as in OpenCV's CharucoBoard.
-Board charuco_board(const YamlEntry& root) {
-  const std::string expected = "2 counts of squares (x, y), 3 to 100 each";
-  const auto squares = at(root, "squares", expected);
-  const auto counts = numbers(squares, 2, expected);
-  for (const double count : counts)
-    if (count < 3 || count > 100 || count != std::floor(count))
-      yaml_fail(squares, fmt::format("{:g}", count), expected);
-  Board board{static_cast<int>(counts[0]) - 1, static_cast<int>(counts[1]) - 1, square_side(root)};
-  const double marker = length_m(root, "marker", "the side of a marker in meters");
-  if (marker >= board.square_m)
-    yaml_fail(at(root, "marker", ""),
-              fmt::format("{:g}", marker),
-              fmt::format("less than the square's side, {:g}", board.square_m));
-  const auto dictionary = at(root, "dictionary", "one of " + dictionary_names());
-  const auto name = dictionary_name(text(dictionary, "a name"));
-  if (!name) yaml_fail(dictionary, "one of " + dictionary_names());
-  board.markers = BoardMarkers{marker, *name};
-  if (marker_count(board) > dictionary_size(*name))
-    yaml_fail(dictionary,
-              fmt::format("{} with {} markers", *name, dictionary_size(*name)),
-              fmt::format("at least {}, one for each marker of the board", marker_count(board)));
-  return board;
-}
-
-/// Reads the width of a tag's black border; Kalibr's is twice as wide as others.
-int tag_border(const YamlEntry& root, int otherwise) {
-  const auto entry = find(root, "tagBorder");
-  return entry ? whole_number(*entry, 1, 2, "a number of bits") : otherwise;
-}
-
-Board april_grid(const YamlEntry& root) {
-  Board board{2 * tag_count(root, "tagCols"), 2 * tag_count(root, "tagRows"), 0};
-  board.square_m = length_m(root, "tagSize", "the side of a tag in meters");
-  const auto spacing = at(root, "tagSpacing", "the gap between tags divided by their side");
-  const double ratio = number(spacing);
-  if (ratio <= 0 || ratio > 1)
-    yaml_fail(
-        spacing, fmt::format("{:g}", ratio), "the gap between tags divided by their side, 0 to 1");
-  board.tags = BoardTags{ratio, tag_border(root, 2), {}};
-  const int count = board.columns * board.rows / 4;
-  if (count > april_tag_count())
-    yaml_fail(at(root, "tagCols", ""),
-              fmt::format("{} tags", count),
-              fmt::format("at most {}", april_tag_count()));
-  return board;
-}
-
-Board april_tag(const YamlEntry& root) {
-  Board board{2, 2, length_m(root, "tagSize", "the side of the tag in meters")};
-  const auto id = find(root, "id");
-  const int number =
-      id ? whole_number(*id, 0, april_tag_count() - 1, "a tag's number") : BoardTags::kAnyTag;
-  board.tags = BoardTags{0, tag_border(root, 1), number};
-  return board;
-}
-
-using Pattern = std::pair<const char*, Board (*)(const YamlEntry& root)>;
-constexpr std::array<Pattern, 4> kPatterns = {{{"chessboard", chessboard},
-                                               {"charuco", charuco_board},
-                                               {"aprilgrid", april_grid},
-                                               {"apriltag", april_tag}}};
-constexpr const char* kPatternNames = "chessboard, charuco, aprilgrid or apriltag";
 
 }  // namespace
 
@@ -167,9 +76,7 @@ Pose csv_pose(const CsvTable& table,
 
 Gyroscope read_gyroscope(const fs::path& file, TimeUnit unit) {
   const CsvTable table = read_csv(file, {"timestamp", "wx", "wy", "wz"}, CsvColumns::at_least);
-  Gyroscope gyroscope;
-  gyroscope.file = file;
-  gyroscope.timestamps_ns = csv_time_stamps(table, unit);
+  const auto times_ns = csv_time_stamps(table, unit);
   const double scale = rad_s_per_unit(table);
   const bool accelerations =
       table.columns >= 7 && (table.header.empty() || lower_case(table.header[4])[0] == 'a');
@@ -178,12 +85,50 @@ Gyroscope read_gyroscope(const fs::path& file, TimeUnit unit) {
                            csv_number(table, row, column + 1),
                            csv_number(table, row, column + 2));
   };
-  for (const auto& row : table.rows) {
-    gyroscope.lines.push_back(row.line);
-    gyroscope.rates_rad_s.emplace_back(scale * vector(row, 1));
-    if (accelerations) gyroscope.accelerations_m_s2.push_back(vector(row, 4));
+  Gyroscope gyroscope;
+  gyroscope.file = file;
+  AccelerationSamples forces;
+  for (std::size_t i = 0; i < times_ns.size(); ++i) {
+    const CsvRow& row = table.rows[i];
+    if (is_measured(table, row, 1, 3)) {
+      gyroscope.timestamps_ns.push_back(times_ns[i]);
+      gyroscope.lines.push_back(row.line);
+      gyroscope.rates_rad_s.emplace_back(scale * vector(row, 1));
+    }
+    if (accelerations && is_measured(table, row, 4, 3)) {
+      forces.timestamps_ns.push_back(times_ns[i]);
+      forces.specific_force.push_back(vector(row, 4));
+    }
   }
+  gyroscope.unmeasured = static_cast<int>(times_ns.size() - gyroscope.rates_rad_s.size());
+  if (gyroscope.rates_rad_s.empty())
+    csv_fail(table, table.rows.front().line, "no row of finite rates", "some");
+  add_accelerations(forces, gyroscope);
   return gyroscope;
+}
+
+void add_accelerations(const AccelerationSamples& samples, Gyroscope& gyroscope) {
+  constexpr std::int64_t kLongestGap_ns = 100'000'000;
+  const auto& [times, values] = samples;
+  if (times.size() != values.size() || times.empty() || gyroscope.timestamps_ns.empty()) return;
+  if (times == gyroscope.timestamps_ns) {
+    gyroscope.accelerations_m_s2 = values;
+    return;
+  }
+  const bool covers = times.front() <= gyroscope.timestamps_ns.front() + kLongestGap_ns &&
+                      times.back() >= gyroscope.timestamps_ns.back() - kLongestGap_ns;
+  if (!covers || times.size() < 2 || !std::ranges::is_sorted(times, std::less_equal())) return;
+  Gyroscope as_rates;
+  as_rates.timestamps_ns = times;
+  as_rates.rates_rad_s = values;
+  for (const std::int64_t time_ns : gyroscope.timestamps_ns) {
+    const auto after = std::ranges::lower_bound(times, time_ns);
+    const bool in_gap = after != times.begin() && after != times.end() &&
+                        *after - *std::prev(after) > kLongestGap_ns && *after != time_ns;
+    gyroscope.accelerations_m_s2.push_back(
+        in_gap ? Eigen::Vector3d::Constant(std::numeric_limits<double>::quiet_NaN())
+               : sample_at(as_rates, time_ns).rate_rad_s);
+  }
 }
 
 ImuCalibration read_imu_calibration(const fs::path& file) {
@@ -265,6 +210,7 @@ GroundTruth camera_truth(const PosePath& path,
                      ? std::move(source)
                      : fmt::format("{}{}{}", source, kOriginally, mounting.source);
   truth.upright = mounting.upright.value_or(false);
+  truth.unmeasured = path.unmeasured;
   for (const std::int64_t time : frame_times_ns) {
     const auto measured = pose_at(path, time + mounting.time_offset_ns);
     truth.poses.push_back(measured ? std::optional(*measured * mounting.T_measured_camera)
@@ -308,16 +254,6 @@ std::optional<GroundTruth> truth_beside(const fs::path& folder,
   return camera_truth(path, mounting, file->filename().string(), frame_times_ns);
 }
 
-Board read_board(const fs::path& file) {
-  const auto root = load_yaml(file);
-  const auto kalibr = find(root, "target_type");
-  const auto pattern = kalibr ? *kalibr : at(root, "pattern", kPatternNames);
-  const std::string name = text(pattern, kPatternNames);
-  const auto known = std::ranges::find(kPatterns, name, &Pattern::first);
-  if (known == kPatterns.end()) yaml_fail(pattern, kPatternNames);
-  return known->second(root);
-}
-
 Plane read_plane(const fs::path& file) {
   const auto root = load_yaml(file);
   const auto normal = at(root, "normal", "[x, y, z]");
@@ -327,42 +263,6 @@ Plane read_plane(const fs::path& file) {
   if (std::abs(norm - 1) > 1e-2)
     yaml_fail(normal, "length " + std::to_string(norm), "a unit vector");
   return {Eigen::Vector3d(n[0], n[1], n[2]) / norm, distance / norm};
-}
-
-std::string board_yaml(const Board& board) {
-  const int columns = board.columns, rows = board.rows;
-  const double side = board.square_m;
-  if (board.tags && board.tags->alone) {
-    const int id = *board.tags->alone;
-    return fmt::format("# Meters.\npattern: apriltag\ntagSize: {}\ntagBorder: {}\n{}",
-                       side,
-                       board.tags->border,
-                       id == BoardTags::kAnyTag ? "" : fmt::format("id: {}\n", id));
-  }
-  if (board.tags)
-    return fmt::format(
-        "# Kalibr's keys, meters.\npattern: aprilgrid\ntagCols: {}\ntagRows: {}\ntagSize: {}\n"
-        "tagSpacing: {}\ntagBorder: {}\n",
-        columns / 2,
-        rows / 2,
-        side,
-        board.tags->spacing,
-        board.tags->border);
-  const auto& markers = board.markers;
-  if (!markers)
-    return fmt::format(
-        "# Inner corners, meters.\npattern: chessboard\ncolumns: {}\nrows: {}\nsquare: {}\n",
-        columns,
-        rows,
-        side);
-  return fmt::format(
-      "# Squares along x and y; meters.\npattern: charuco\nsquares: [{}, {}]\nsquare: {}\n"
-      "marker: {}\ndictionary: {}\n",
-      columns + 1,
-      rows + 1,
-      side,
-      markers->side_m,
-      markers->dictionary);
 }
 
 std::string plane_yaml(const Plane& plane) {

@@ -60,6 +60,16 @@ Pose csv_pose(const CsvTable& table,
               int position,
               const std::array<int, 4>& quaternion);
 
+/// Accelerometer samples, with times on the gyroscope's clock.
+struct AccelerationSamples {
+  std::vector<std::int64_t> timestamps_ns;      ///< ascending
+  std::vector<Eigen::Vector3d> specific_force;  ///< the gyroscope's axes [m/s^2]
+};
+
+/// Sets the accelerations at the gyroscope's samples by linear interpolation; nan in gaps of more
+/// than 0.1 s. Leaves them empty if the accelerometer does not cover the gyroscope but for 0.1 s.
+void add_accelerations(const AccelerationSamples& samples, Gyroscope& gyroscope);
+
 /// Time stamps, rates [rad/s] (or [deg/s] by the header), accelerations. Throws InputError.
 Gyroscope read_gyroscope(const fs::path& file, TimeUnit unit);
 
@@ -82,6 +92,7 @@ struct PosePath {
   std::vector<std::int64_t> timestamps_ns;              ///< strictly ascending
   std::vector<Pose> poses;                              ///< in the truth's world [m]
   std::int64_t longest_gap_ns = 0;                      ///< largest gap to interpolate
+  int unmeasured = 0;                                   ///< rows that are not finite, left out
   std::optional<Eigen::Vector3d> mean_gyro_bias_rad_s;  ///< if the file has the columns
 };
 

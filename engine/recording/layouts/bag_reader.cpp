@@ -92,19 +92,25 @@ bool is_measured(const std::vector<ImuMessage>& samples,
 Gyroscope gyroscope_of(const OpenedBag& opened) {
   Gyroscope gyroscope;
   gyroscope.file = opened.bag->file;
+  AccelerationSamples forces;
   const auto& samples = opened.contents.imu;
   const bool accelerations = is_measured(samples, &ImuMessage::linear_acceleration);
   for (const ImuMessage& sample : samples) {
+    if (accelerations && sample.linear_acceleration->allFinite()) {
+      forces.timestamps_ns.push_back(sample.header.stamp_ns);
+      forces.specific_force.push_back(*sample.linear_acceleration);
+    }
+    if (!sample.angular_velocity->allFinite()) {
+      ++gyroscope.unmeasured;
+      continue;
+    }
     gyroscope.timestamps_ns.push_back(sample.header.stamp_ns);
     gyroscope.lines.push_back(static_cast<int>(gyroscope.lines.size()) + 1);
     gyroscope.rates_rad_s.push_back(*sample.angular_velocity);
-    if (accelerations) gyroscope.accelerations_m_s2.push_back(*sample.linear_acceleration);
-    if (!sample.angular_velocity->allFinite() ||
-        (accelerations && !sample.linear_acceleration->allFinite()))
-      refuse(opened.name(opened.role_of_rates()),
-             "the sample at {} ns is not finite",
-             sample.header.stamp_ns);
   }
+  if (gyroscope.rates_rad_s.empty())
+    refuse(opened.name(opened.role_of_rates()), "no sample is finite");
+  add_accelerations(forces, gyroscope);
   return gyroscope;
 }
 
@@ -149,6 +155,10 @@ void add_gyroscope(Recording& recording,
 PosePath path_of(const OpenedBag& opened) {
   PosePath path;
   for (const PoseMessage& one : opened.contents.truth) {
+    if (!one.position.allFinite() || !one.quaternion_xyzw.allFinite()) {
+      ++path.unmeasured;
+      continue;
+    }
     const auto pose = one.pose();
     if (!pose)
       refuse(opened.name(TopicRole::truth),
@@ -158,6 +168,7 @@ PosePath path_of(const OpenedBag& opened) {
     path.timestamps_ns.push_back(one.header.stamp_ns);
     path.poses.push_back(*pose);
   }
+  if (path.poses.empty()) refuse(opened.name(TopicRole::truth), "no pose is finite");
   path.longest_gap_ns = usual_longest_gap_ns(path.timestamps_ns);
   return path;
 }

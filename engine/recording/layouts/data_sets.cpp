@@ -48,14 +48,6 @@ std::optional<Pose> pose_of(std::span<const double> T) {
   return pose;
 }
 
-/// Returns whether a word is a number that is not finite, as printf writes it: "-nan", "inf",
-/// "-1.#IND", "nan(ind)".
-bool is_not_finite(std::string_view word) {
-  std::string name = lower_case(word);
-  if (name.starts_with('-') || name.starts_with('+')) name.erase(0, 1);
-  return name.starts_with("nan") || name == "inf" || name == "infinity" || name.starts_with("1.#");
-}
-
 std::vector<double> numbers_of(std::string_view line, const std::string& place) {
   std::vector<double> values;
   while (!line.empty()) {

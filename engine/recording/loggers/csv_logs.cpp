@@ -49,10 +49,11 @@ int column_of(const CsvTable& table, const std::string& name) {
   refuse(table.file, "missing column \"{}\"", name);
 }
 
-Gyroscope gyroscope_of(const CsvTable& table, const std::array<std::string, 4>& names) {
+Gyroscope gyroscope_of(CsvTable& table, const std::array<std::string, 4>& names) {
   std::array<int, 4> columns{};
   for (int k = 0; k < 4; ++k) columns[k] = column_of(table, names[k]);
   Gyroscope gyroscope;
+  for (int k = 1; k < 4; ++k) gyroscope.unmeasured += drop_unmeasured(table, columns[k], 1);
   gyroscope.file = table.file;
   for (const CsvRow& row : table.rows) {
     const auto time_ns = parse_decimal(csv_cell(table, row, columns[0]), 9);
@@ -125,9 +126,9 @@ void add_frames(Log& log, const fs::path& file) {
 
 /// Reads poses at the times of the frames. `R_body_camera` is the camera in the axes of the poses.
 void add_poses(Log& log, const fs::path& file, const Eigen::Matrix3d& R_body_camera) {
-  const CsvTable table =
-      read_csv(file, {"timestamp", "", "", "", "", "", "", ""}, CsvColumns::at_least);
+  CsvTable table = read_csv(file, {"timestamp", "", "", "", "", "", "", ""}, CsvColumns::at_least);
   PosePath path;
+  drop_unmeasured(table, 1, 7);
   path.timestamps_ns = csv_time_stamps(table, TimeUnit::seconds);
   path.longest_gap_ns = usual_longest_gap_ns(path.timestamps_ns);
   for (const CsvRow& row : table.rows) {
@@ -151,6 +152,7 @@ CsvTable phone_samples(const fs::path& file) {
     last_ns = time_ns;
     return false;
   });
+  drop_unmeasured(table, 1, 3);
   return table;
 }
 
@@ -169,16 +171,19 @@ void add_phone_poses(Log& log, const fs::path& folder) {
 void add_forces(Gyroscope& gyroscope,
                 const CsvTable& table,
                 int first,
-                std::vector<std::int64_t> times_ns) {
+                const std::vector<std::int64_t>& times_ns) {
   constexpr double kLeastInG = 0.5, kMostInG = 3;
   AccelerationSamples samples;
-  samples.timestamps_ns = std::move(times_ns);
   std::vector<double> lengths;
-  for (const CsvRow& row : table.rows) {
+  for (std::size_t i = 0; i < table.rows.size(); ++i) {
+    const CsvRow& row = table.rows[i];
+    if (!is_measured(table, row, first, 3)) continue;
     const auto at = [&](int k) { return csv_number(table, row, first + k); };
+    samples.timestamps_ns.push_back(times_ns[i]);
     samples.specific_force.emplace_back(at(0), at(1), at(2));
     lengths.push_back(samples.specific_force.back().norm());
   }
+  if (lengths.empty()) return;
   const double length = median(std::move(lengths));
   if (!(length > kLeastInG)) return;
   if (length < kMostInG)
@@ -275,8 +280,8 @@ Eigen::Matrix3d axes_of(const GcsvFile& gcsv) {
 Log read_sensor_logger(const fs::path& file) {
   Log log;
   log.file = file;
-  log.gyroscope = gyroscope_of(read_csv(file, {"timestamp"}, CsvColumns::at_least),
-                               {"seconds_elapsed", "x", "y", "z"});
+  CsvTable table = read_csv(file, {"timestamp"}, CsvColumns::at_least);
+  log.gyroscope = gyroscope_of(table, {"seconds_elapsed", "x", "y", "z"});
   log.T_body_camera = Pose{rear_camera(), Eigen::Vector3d::Zero()};
   log.notes.emplace_back(
       "Gyroscope.csv: assuming that its elapsed seconds are the video's time and that the camera "
@@ -317,7 +322,7 @@ Log read_stray_scanner(const fs::path& folder) {
   log.frames_file = folder / "odometry.csv";
   add_odometry(log, log.frames_file);
   if (!is_file(log.file)) return log;
-  const CsvTable table = read_csv(log.file, {"timestamp"}, CsvColumns::at_least);
+  CsvTable table = read_csv(log.file, {"timestamp"}, CsvColumns::at_least);
   log.gyroscope = gyroscope_of(table, {"timestamp", "alpha_x", "alpha_y", "alpha_z"});
   if (const auto first = column_if(table, "a_x"))
     add_forces(*log.gyroscope, table, *first, log.gyroscope->timestamps_ns);
@@ -326,8 +331,8 @@ Log read_stray_scanner(const fs::path& folder) {
 }
 
 Log read_gcsv(const fs::path& file) {
-  const GcsvFile gcsv = open_gcsv(file);
-  const CsvTable& table = gcsv.table;
+  GcsvFile gcsv = open_gcsv(file);
+  CsvTable& table = gcsv.table;
   const double tscale = required_scale(gcsv, "tscale");
   const double gscale = required_scale(gcsv, "gscale");
   Log log;
@@ -339,6 +344,8 @@ Log read_gcsv(const fs::path& file) {
                            });
   Gyroscope gyroscope;
   gyroscope.file = file;
+  gyroscope.unmeasured = drop_unmeasured(table, 1, 3);
+  AccelerationSamples forces;
   for (const CsvRow& row : table.rows) {
     const double time_s = tscale * csv_number(table, row, 0);
     if (!(std::abs(time_s) < kMostTime_s))
@@ -346,11 +353,13 @@ Log read_gcsv(const fs::path& file) {
     const Eigen::Vector3d rates(
         csv_number(table, row, 1), csv_number(table, row, 2), csv_number(table, row, 3));
     add_sample(gyroscope, table, row, std::llround(1e9 * time_s), gscale * rates);
-    if (!accelerates) continue;
-    const Eigen::Vector3d forces(
+    if (!accelerates || !is_measured(table, row, 4, 3)) continue;
+    const Eigen::Vector3d force(
         csv_number(table, row, 4), csv_number(table, row, 5), csv_number(table, row, 6));
-    gyroscope.accelerations_m_s2.emplace_back(kStandardGravity_m_s2 * *ascale * forces);
+    forces.timestamps_ns.push_back(gyroscope.timestamps_ns.back());
+    forces.specific_force.emplace_back(kStandardGravity_m_s2 * *ascale * force);
   }
+  add_accelerations(forces, gyroscope);
   log.gyroscope = std::move(gyroscope);
   if (const auto readout_ms = head_number(gcsv, "frame_readout_time")) {
     // 0: top to bottom, 1: bottom to top, 2: left to right, 3: right to left.

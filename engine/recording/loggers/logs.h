@@ -140,16 +140,6 @@ std::vector<std::int64_t> gpmf_times_ns(
     const std::vector<double>& payload_times_s,
     GpmfSamples GpmfPayload::*sensor = &GpmfPayload::rates_rad_s);
 
-/// Accelerometer samples, with times on the gyroscope's clock.
-struct AccelerationSamples {
-  std::vector<std::int64_t> timestamps_ns;      ///< ascending
-  std::vector<Eigen::Vector3d> specific_force;  ///< the gyroscope's axes [m/s^2]
-};
-
-/// Sets the accelerations at the gyroscope's samples by linear interpolation. Leaves them empty if
-/// the accelerometer does not cover the gyroscope but for 0.1 s.
-void add_accelerations(const AccelerationSamples& samples, Gyroscope& gyroscope);
-
 /// Returns how a GoPro's settings state that the images are stabilized, for people; empty if not.
 std::string stabilization_of_gpmf(std::string_view settings);
 

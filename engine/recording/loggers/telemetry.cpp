@@ -196,20 +196,6 @@ Eigen::Vector3d camm_vector(std::string_view bytes, const std::string& source, c
 
 }  // namespace
 
-void add_accelerations(const AccelerationSamples& samples, Gyroscope& gyroscope) {
-  constexpr std::int64_t kMargin_ns = 100'000'000;
-  const auto& [times, values] = samples;
-  if (times.size() != values.size() || times.size() < 2 || gyroscope.timestamps_ns.empty()) return;
-  const bool covers = times.front() <= gyroscope.timestamps_ns.front() + kMargin_ns &&
-                      times.back() >= gyroscope.timestamps_ns.back() - kMargin_ns;
-  if (!covers || !std::ranges::is_sorted(times, std::less_equal())) return;
-  Gyroscope as_rates;
-  as_rates.timestamps_ns = times;
-  as_rates.rates_rad_s = values;
-  for (const std::int64_t time_ns : gyroscope.timestamps_ns)
-    gyroscope.accelerations_m_s2.push_back(sample_at(as_rates, time_ns).rate_rad_s);
-}
-
 std::optional<TelemetryTrack> read_telemetry_track(const fs::path& video) {
   const libav::Format format = libav::open_input(video, "mov");
   AVStream* stream = format ? telemetry_stream(*format) : nullptr;

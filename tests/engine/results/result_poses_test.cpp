@@ -78,6 +78,15 @@ TEST(ResultPoses, ReadsSecondsWithCommasAndCountsRepeatedRows) {
   EXPECT_EQ(repeated.repeats, 3);
 }
 
+TEST(ResultPoses, LeavesOutRowsWithoutAPose) {
+  const TestFolder folder;
+  const std::string lost = std::to_string(1e-9 * static_cast<double>(kTimes_ns.back() + 1'000'000));
+  const auto result = read_result_poses(
+      folder.write("a.txt", tum_text(kTimes_ns, poses()) + lost + " nan nan nan 0 0 0 1\n"));
+  expect_poses(result, FoundBy::time, PosedFrame::camera);
+  EXPECT_EQ(result.unmeasured, 1);
+}
+
 TEST(ResultPoses, ReadsModelsInTextAndBinary) {
   const TestFolder folder;
   const std::vector<std::string> names = {"cam0/1.png", "cam0/with blanks.png", "cam0/3.png"};

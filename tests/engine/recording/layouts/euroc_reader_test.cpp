@@ -9,7 +9,7 @@
 namespace gpo::test {
 namespace {
 
-using testing::Contains, testing::ElementsAre, testing::HasSubstr;
+using testing::Contains, testing::ElementsAre, testing::HasSubstr, testing::IsNan;
 
 /// Camera axes in body axes: x -> y, y -> z, z -> x.
 const char* const kTbsCamera = "T_BS: [0, 0, 1, 0.1, 1, 0, 0, 0.2, 0, 1, 0, 0.3, 0, 0, 0, 1]\n";
@@ -114,6 +114,39 @@ TEST_F(EurocReader, DoesNotInterpolateOverAGapInTheTruth) {
   EXPECT_FALSE(poses[3]);  // after the end
 }
 
+TEST_F(EurocReader, LeavesOutPosesThatWereNotMeasured) {
+  std::string rows;
+  for (const int ms : {0, 50, 100, 150, 200})
+    rows += fmt::format("{},{},0,0,1,0,0,0\n",
+                        1403636579000000001 + ms * 1000000LL,
+                        ms == 50 || ms == 200 ? "nan" : "1");
+  write_truth(rows);
+  const auto recording = open();
+  EXPECT_TRUE(recording->truth->poses[1]);
+  EXPECT_FALSE(recording->truth->poses[2]);
+  EXPECT_THAT(recording->notes,
+              Contains("state_groundtruth_estimate0/data.csv: 2 poses left out, not finite"));
+}
+
+TEST_F(EurocReader, InterpolatesAccelerationsExceptInLongGaps) {
+  std::string imu =
+      "#timestamp [ns],w_x [rad s^-1],w_y [rad s^-1],w_z [rad s^-1],a_x [m s^-2],a_y [m s^-2],a_z "
+      "[m s^-2]\n";
+  for (int i = 0; i < 8; ++i)
+    imu += fmt::format("{},{},0,0,{},0,9.8\n",
+                       1403636579000000001 + i * 50'000'000LL,
+                       i == 3 ? "nan" : "0.1",
+                       i == 1 || i == 4 || i == 5 ? "-nan" : std::to_string(i));
+  folder.write("mav0/imu0/data.csv", imu);
+  const auto recording = open();
+  const Gyroscope& gyroscope = *recording->gyroscope;
+  EXPECT_EQ(gyroscope.rates_rad_s.size(), 7U);
+  EXPECT_THAT(recording->notes, Contains("data.csv: 1 sample left out, not finite"));
+  std::vector<double> x;
+  for (const Eigen::Vector3d& force : gyroscope.accelerations_m_s2) x.push_back(force.x());
+  EXPECT_THAT(x, ElementsAre(0, 1, 2, IsNan(), IsNan(), 6, 7));
+}
+
 TEST_F(EurocReader, ReadsTumVisMocapFolder) {
   folder.write("mav0/mocap0/data.csv", "1403636579000000001,1,2,3,0,1,0,0\n");
   const auto recording = open();
@@ -174,7 +207,9 @@ TEST_F(EurocReader, NamesBadTruth) {
   write_truth("1403636579000000001,1,2,3,0.9,0,0,0\n");
   EXPECT_THAT(error(), HasSubstr("data.csv:2: found a quaternion of norm 0.9"));
   write_truth("1403636579000000001,1,2,nan,1,0,0,0\n");
-  EXPECT_THAT(error(), HasSubstr("data.csv:2: found \"nan\", expected a finite number"));
+  EXPECT_THAT(error(), HasSubstr("data.csv:2: found no row of finite numbers, expected some"));
+  write_truth("1403636579000000001,1,2,far,1,0,0,0\n");
+  EXPECT_THAT(error(), HasSubstr("data.csv:2: found \"far\", expected a finite number"));
   write_truth("1403636579000000001,1,2,3,1,0,0\n");
   EXPECT_THAT(error(), HasSubstr("data.csv:2: found 7 columns, expected at least 8"));
 }

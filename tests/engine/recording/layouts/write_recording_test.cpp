@@ -66,6 +66,23 @@ TEST_P(WrittenBag, OpensAsTheSameRecording) {
               HasSubstr("already exists; choose a new file"));
 }
 
+TEST_P(WrittenBag, OpensWithoutSamplesThatAreNotFinite) {
+  Recording changed = *open_recording(small_bag());
+  Gyroscope& gyroscope = *changed.gyroscope;
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  gyroscope.rates_rad_s[2].x() = nan;
+  const Eigen::Vector3d between =
+      (gyroscope.accelerations_m_s2[3] + gyroscope.accelerations_m_s2[5]) / 2;
+  gyroscope.accelerations_m_s2[4].z() = nan;
+  const fs::path file = folder.path() / "written" / "new.bag";
+  write_recording(changed, changed.truth, GetParam(), file);
+  const auto written = open_recording(file);
+  ASSERT_EQ(written->gyroscope->rates_rad_s.size(), gyroscope.rates_rad_s.size() - 1);
+  EXPECT_EQ(written->gyroscope->unmeasured, 1);
+  EXPECT_EQ(written->gyroscope->accelerations_m_s2[2], gyroscope.accelerations_m_s2[3]);
+  EXPECT_LT((written->gyroscope->accelerations_m_s2[3] - between).norm(), 1e-12);
+}
+
 TEST_F(BagWriting, RefusesForeignFilesBesideAWrittenBag) {
   const auto recording = open_recording(small_bag());
   const auto error = [&](const char* name) {
