@@ -1,5 +1,6 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
+#include "engine/recording/companions/companion_files.h"
 #include "engine/recording/layouts/open_recording.h"
 #include "engine/recording/loggers/logs.h"
 #include "engine/window/timestamps.h"
@@ -77,13 +78,16 @@ TEST(Gpmf, NamesStabilizationThatIsOn) {
 
 TEST(AddAccelerations, InterpolatesOnlyWhatTheAccelerometerCovers) {
   Gyroscope gyroscope;
-  gyroscope.timestamps_ns = {0, 500'000'000, 1'000'000'000};
-  gyroscope.rates_rad_s.assign(3, kRates);
+  gyroscope.timestamps_ns = {0, 50'000'000, 100'000'000, 500'000'000};
+  gyroscope.rates_rad_s.assign(4, kRates);
   Gyroscope uncovered = gyroscope;
-  add_accelerations({{0, 1'000'000'000}, {{0, 0, 9}, {0, 0, 10}}}, gyroscope);
-  ASSERT_EQ(gyroscope.accelerations_m_s2.size(), 3U);
+  add_accelerations({{0, 100'000'000, 600'000'000}, {{0, 0, 9}, {0, 0, 10}, {0, 0, 11}}},
+                    gyroscope);
+  ASSERT_EQ(gyroscope.accelerations_m_s2.size(), 4U);
   EXPECT_NEAR(gyroscope.accelerations_m_s2[1].z(), 9.5, 1e-12);
-  add_accelerations({{0, 500'000'000}, {{0, 0, 9}, {0, 0, 10}}}, uncovered);
+  EXPECT_NEAR(gyroscope.accelerations_m_s2[2].z(), 10, 1e-12);
+  EXPECT_FALSE(gyroscope.accelerations_m_s2[3].allFinite());  // in a gap of 0.5 s
+  add_accelerations({{0, 300'000'000}, {{0, 0, 9}, {0, 0, 10}}}, uncovered);
   EXPECT_THAT(uncovered.accelerations_m_s2, IsEmpty());
 }
 
