@@ -126,7 +126,7 @@ TEST(ResultPoses, ReportsErrorsOfTrajectoriesByLine) {
            {"hello\n", "no row of numbers"},
            {"1 2 3\n", "rows of 3 numbers"},
            {good + "1520530309.1 0 0 0 0 0 0 0\n", "t.txt:4: found a quaternion of norm 0"},
-           {good + "1520530309.1 0 0 nan 0 0 0 1\n", "t.txt:4"},
+           {good + "1520530309.1 0 0 far 0 0 0 1\n", "t.txt:4: found \"far\""},
            {good + "1520530309.1 0 0 1e400 0 0 0 1\n", "t.txt:4"},
            {good + "1520530309.1 0 0 1e13 0 0 0 1\n", "pose 4: found a position beyond 1e+12"},
            {good + "1520530309.1 0 0\n", "t.txt:4: found 3 columns"},

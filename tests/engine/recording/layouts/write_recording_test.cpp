@@ -74,7 +74,8 @@ TEST_P(WrittenBag, OpensWithoutSamplesThatAreNotFinite) {
   const Eigen::Vector3d between =
       (gyroscope.accelerations_m_s2[3] + gyroscope.accelerations_m_s2[5]) / 2;
   gyroscope.accelerations_m_s2[4].z() = nan;
-  const fs::path file = folder.path() / "written" / "new.bag";
+  const fs::path file =
+      folder.path() / "written" / (GetParam() == RecordingFormat::mcap ? "new.mcap" : "new.bag");
   write_recording(changed, changed.truth, GetParam(), file);
   const auto written = open_recording(file);
   ASSERT_EQ(written->gyroscope->rates_rad_s.size(), gyroscope.rates_rad_s.size() - 1);
