@@ -19,7 +19,7 @@
 #   browser     opens a report in Chromium and turns its scene by the mouse
 #   gcc         builds with GCC, the others use clang, with warnings as errors, and runs all tests
 #   flags       links a program to the library with compiler flags that change Eigen's alignment
-#   exports     COLMAP and assimp read our exports and compute the same numbers
+#   exports     COLMAP, assimp, Blender and Foxglove's reader read our exports and compute the same numbers
 #   headers     compiles each header of the engine alone
 #   packages    builds, installs and uses the Debian packages; needs root and changes the machine
 #   arm64       runs the tests of gpo::core for arm64 with qemu
@@ -90,7 +90,14 @@ exports() {
   build_ci || return 1
   local log=build/nightly/exports.txt
   ctest --test-dir build/ci --verbose -R '^(ColmapExport|GltfExport)$' | tee "$log"
-  [ "${PIPESTATUS[0]}" -eq 0 ] && ! grep -q 'SKIPPED' "$log"
+  [ "${PIPESTATUS[0]}" -eq 0 ] && ! grep -q 'SKIPPED' "$log" && foxglove
+}
+foxglove() {
+  local folder=$PWD/build/nightly/foxglove
+  rm -rf "$folder" && mkdir -p "$folder" && cp tests/engine/exports/foxglove_messages.mjs "$folder" || return 1
+  build/ci/app/gpo-inspector run sequences/desk --export foxglove="$folder/desk.mcap" &&
+    npm install --prefix "$folder" @mcap/core @mcap/nodejs @mcap/support @foxglove/schemas ajv &&
+    node "$folder/foxglove_messages.mjs" "$folder/desk.mcap"
 }
 
 nine() {

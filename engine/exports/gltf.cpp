@@ -197,7 +197,8 @@ class SceneFile {
                    {"perspective",
                     {{"yfov", 2 * std::atan(height / (2 * lens.fy))},
                      {"aspectRatio", width * lens.fy / (height * lens.fx)},
-                     {"znear", 0.01}}},
+                     {"znear", 0.01},
+                     {"zfar", 1000}}},
                    {"extras", {{"cx_px", lens.cx}, {"cy_px", lens.cy}, {"width_px", width}}}});
     std::vector<Vector3d> centers;
     std::vector<Vector4d> rotations;

@@ -201,5 +201,35 @@ TEST_F(GltfExport, AssimpReadsTheSameCameras) {
   EXPECT_THAT(xml, HasSubstr("<Animation name=\"camera\""));
 }
 
+TEST_F(GltfExport, BlenderReadsTheSameCamerasAndTheirAnimation) {
+  if (std::system("command -v blender > /dev/null") != 0)
+    GTEST_SKIP() << "blender is not installed (package blender)";
+  const Inspection room = exported_room(kGltfLens);
+  const GltfFile gltf = exported(room);
+  const fs::path log = folder.path() / "blender.log";
+  const std::string command =
+      fmt::format("blender --background --python-exit-code 1 --python '{}' -- '{}' > '{}' 2>&1",
+                  GPO_SOURCE_DIR "/tests/engine/exports/blender_cameras.py",
+                  file.string(),
+                  log.string());
+  ASSERT_EQ(std::system(command.c_str()), 0) << read_file(log);
+  const std::string printed = read_file(log);
+  const std::size_t begin = printed.find("CAMERAS ") + 8;
+  const json found = json::parse(printed.substr(begin, printed.find('\n', begin) - begin));
+  const Eigen::Matrix3d R_gltf_world = rotation_of(gltf.node("world")["rotation"]).matrix();
+  const auto& cameras = room.initialization->cameras;
+  ASSERT_EQ(found["path"].size(), cameras.size());
+  for (std::size_t i = 0; i < cameras.size(); ++i) {
+    const std::string name = fmt::format("frame {}", i);
+    const Eigen::Vector3d center = R_gltf_world * cameras[i].p_wc;
+    EXPECT_LT((vector_of(found["centers"][name]) - center).norm(), 1e-5);
+    EXPECT_LT((vector_of(found["path"][i]) - center).norm(), 1e-4);
+    EXPECT_LT((vector_of(found["directions"][name]) - R_gltf_world * cameras[i].R_wc.col(2)).norm(),
+              1e-5);
+  }
+  EXPECT_NEAR(found["yfov_rad"], 2 * std::atan(240.0 / 510), 1e-5);
+  EXPECT_EQ(found["images"], 2) << "both planes have a texture";
+}
+
 }  // namespace
 }  // namespace gpo::test
