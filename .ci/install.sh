@@ -20,7 +20,7 @@ test_packages=(
   python3-matplotlib  # engine/examples/planes_of_a_room.py
   groff-base bsdextrautils zsh  # the manual page, completions
 )
-export_packages=(colmap assimp-utils blender npm)  # programs that read our exports; tests/nightly.sh
+export_packages=(colmap assimp-utils blender)  # programs that read our exports; tests/nightly.sh
 nightly_packages=(chromium)  # opens a report; large, its test skips without it
 benchmark_packages=(libbenchmark-dev)
 sanitizer_packages=(libclang-rt-dev)  # tests/nightly.sh

@@ -94,6 +94,7 @@ exports() {
 }
 foxglove() {
   local folder=$PWD/build/nightly/foxglove
+  command -v npm >/dev/null || install_packages npm
   rm -rf "$folder" && mkdir -p "$folder" && cp tests/engine/exports/foxglove_messages.mjs "$folder" || return 1
   build/ci/app/gpo-inspector run sequences/desk --export foxglove="$folder/desk.mcap" &&
     npm install --prefix "$folder" @mcap/core @mcap/nodejs @mcap/support @foxglove/schemas ajv &&
