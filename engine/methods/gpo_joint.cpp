@@ -44,7 +44,6 @@ constexpr double kMayBeWorth = 1.1;
 constexpr double kTriedRowDelay_s = 2e-5;
 constexpr int kShutterRounds = 4;
 /// Prior of an unknown readout time: a phone's is up to 35 ms, a global shutter's 0 [s].
-constexpr double kReadoutSigma_s = 0.02;
 
 struct RotationUnknowns {
   RotationModel model = RotationModel::known;
@@ -310,13 +309,11 @@ PlaneMotion best_start(const Task& task, SolverReport& effort) {
 /// Returns the solution of the joint model that starts at a fit. With free rotations the plane's
 /// other decomposition may fit as well.
 std::optional<joint::Solution> solve_jointly(const Task& task, const Fit& fit) {
-  const Eigen::Vector2d center_px = task.window.K.topRightCorner<2, 1>();
-  const double rows = 2 * std::abs(task.window.readout_direction.dot(center_px)) + 1;
   joint::Options options{.rotations = fit.rotations.model,
                          .gyro_noise = fit.rotations.gyro_noise,
                          .row_delay = std::nullopt,
                          .huber = task.options.loss == Loss::huber};
-  if (task.options.shutter != Shutter::global) options.row_delay = {0, kReadoutSigma_s / rows};
+  if (task.options.shutter != Shutter::global) options.row_delay = unknown_row_delay(task.window);
   if (task.options.shutter == Shutter::known && task.window.row_delay)
     options.row_delay = task.window.row_delay;
   const PlaneMotion start = facing(task.window, fit.solution.motion);

@@ -31,8 +31,8 @@ void add_planes(const Window& window, Initialization& result) {
 }
 
 /// Completes the reason of a verdict: by the uncertainty with an exact lens, or if it is not ready
-/// by a late clock as the main cause, or if it is weak by the lens, the surface or the camera
-/// model.
+/// by a late clock or the rolling shutter as the main cause, or if it is weak by the lens, the
+/// surface or the camera model.
 void explain(const Uncertainty& u, Lens lens, Verdict& verdict) {
   constexpr double kMainShare = 0.7;  // about half of the variance
   const double sigma_deg = normal_sigma_deg(u, lens);
@@ -45,6 +45,13 @@ void explain(const Uncertainty& u, Lens lens, Verdict& verdict) {
     verdict.reason = fmt::format(
         "the clock of the gyroscope is about {:+.0f} ms off: use gpo_joint, or calibrate it",
         1e3 * *u.late_s);
+    return;
+  }
+  if (verdict.readiness != Readiness::ready && is_main(u.shutter_sigma_deg) &&
+      u.neglected_row_delay_s) {
+    verdict.reason = fmt::format(
+        "rolling shutter, {:.1f} us from row to row, which the method does not know: use gpo_joint",
+        1e6 * *u.neglected_row_delay_s);
     return;
   }
   if (verdict.readiness != Readiness::weak) return;
@@ -168,7 +175,7 @@ std::optional<NoiseSpread> own_noise(const Method& method,
   });
 }
 
-constexpr double kMostBend_deg = 45;  // a surface whose normal varies more is no plane
+constexpr double kMostBend_deg = 12;  // a surface whose normal varies more is no plane
 
 /// An uneven surface makes a window weak, not degenerate: a longer path would not help.
 Verdict judged_with_bend(const WindowEvidence& evidence,

@@ -22,10 +22,6 @@ using nlohmann::ordered_json;
 /// Raised if a key is renamed, removed or gets another meaning, not for additional keys.
 constexpr int kResultFormat = 1;
 
-std::string program_version() {
-  return fmt::format("{}.{}.{}", GPO_VERSION_MAJOR, GPO_VERSION_MINOR, GPO_VERSION_PATCH);
-}
-
 ordered_json vector_json(const auto& v) {
   return ordered_json(std::vector<double>(v.begin(), v.end()));
 }
@@ -190,8 +186,8 @@ ordered_json truth_json(const WindowTruth& truth) {
   const auto known = [](const std::optional<Pose>& pose) { return pose.has_value(); };
   ordered_json json = {{"source", truth.source},
                        {"frames", std::ranges::count_if(truth.cameras, known)}};
-  if (const auto uncertainty = median_uncertainty(truth.uncertainties))
-    json.update(pose_uncertainty_json(*uncertainty));
+  if (const auto median = median_uncertainty(truth.uncertainties))
+    json.update(pose_uncertainty_json(*median));
   return json;
 }
 
@@ -203,9 +199,16 @@ ordered_json uncertainty_json(const Initialization& result) {
     ratios.push_back({{"value", 1 + result.plane.normal.dot(result.cameras[i].p_wc)},
                       {"sigma", u.distance_ratio_sigmas[i]}});
   double noise_square = std::pow(u.normal_sigma_deg, 2);
-  for (const auto& part_deg :
-       {u.lens_sigma_deg, u.neighbors_sigma_deg, u.bend_sigma_deg, u.clock_sigma_deg})
+  ordered_json parts = {{"noise", 0}};
+  for (const auto& [name, part_deg] : {std::pair("neighbors", u.neighbors_sigma_deg),
+                                       {"bend", u.bend_sigma_deg},
+                                       {"clock", u.clock_sigma_deg},
+                                       {"shutter", u.shutter_sigma_deg},
+                                       {"lens", u.lens_sigma_deg}}) {
     noise_square -= std::pow(part_deg.value_or(0), 2);
+    parts[name] = optional_json(part_deg);
+  }
+  parts["noise"] = std::sqrt(std::max(0.0, noise_square));
   ordered_json json = {
       {"of", u.own ? "method" : "window"},
       {"rotations", to_string(u.rotations)},
@@ -214,12 +217,7 @@ ordered_json uncertainty_json(const Initialization& result) {
       {"lens", u.typical_lens_sigma_deg ? "taken as exact" : "as its calibration says"},
       {"normal_sigma_deg", u.normal_sigma_deg},
       {"typical_lens_sigma_deg", optional_json(u.typical_lens_sigma_deg)},
-      {"parts_deg",
-       {{"noise", std::sqrt(std::max(0.0, noise_square))},
-        {"neighbors", optional_json(u.neighbors_sigma_deg)},
-        {"bend", optional_json(u.bend_sigma_deg)},
-        {"clock", optional_json(u.clock_sigma_deg)},
-        {"lens", optional_json(u.lens_sigma_deg)}}},
+      {"parts_deg", parts},
       {"normal_covariance_rad2", matrix_json(u.normal_covariance)},
       {"distance_ratios", ratios},
       {"center_covariances",
@@ -341,7 +339,8 @@ ordered_json to_json(const Inspection& inspection) {
   const Window& window = *inspection.window;
   ordered_json json;
   json["format_version"] = kResultFormat;
-  json["program_version"] = program_version();
+  json["program_version"] =
+      fmt::format("{}.{}.{}", GPO_VERSION_MAJOR, GPO_VERSION_MINOR, GPO_VERSION_PATCH);
   json["recording"] = inspection.recording->path.string();
   json["camera"] = camera_json(*inspection.recording);
   json["method"] = inspection.settings.options.method.key();
@@ -358,7 +357,7 @@ ordered_json to_json(const Inspection& inspection) {
   if (inspection.gyroscope_bias_rad_s)
     json["gyroscope_bias_rad_s"] = vector_json(*inspection.gyroscope_bias_rad_s);
   json["planes"] = planes_json(inspection);
-  json["plane"] = result.ok ? plane_json(result.plane) : ordered_json(nullptr);
+  json["plane"] = result.ok ? plane_json(result.plane) : ordered_json();
   json["frames"] = frames_json(inspection);
   const auto& ids = inspection.tracks->ids;
   json["points"] = array_json(result.points, [&](const MapPoint& point) -> ordered_json {
@@ -377,10 +376,9 @@ ordered_json to_json(const Inspection& inspection) {
   if (inspection.metric_scale_from)
     json["inertial"]["scale_known_at_frame"] = window.start + *inspection.metric_scale_from;
   add_world(inspection, json);
-  Verdict unjudged;
-  unjudged.reason = result.reason;
   if (result.verdict || !result.ok)
-    json["verdict"] = verdict_json(result.verdict.value_or(unjudged), window);
+    json["verdict"] =
+        verdict_json(result.verdict.value_or(Verdict{.reason = result.reason}), window);
   if (!inspection.growth.empty()) json["growth"] = growth_json(inspection.growth);
   if (!result.candidates.empty())
     json["candidates"] = array_json(

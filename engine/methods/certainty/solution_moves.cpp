@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <utility>
 
 namespace gpo {
@@ -169,6 +170,38 @@ std::vector<SolutionMove> moves_by_lens(const Sandwich& sandwich, LensMoves move
       moves.back().own[i] = -bread.frames[i].inverse * of_frame[i].col(p);
   }
   return moves;
+}
+
+// The errors r of the points change by q = e + J x, where x is the displacement of the solution by
+// the moves, and the best multiple is -q^T W r / q^T W q. Its scores are summed over tracks.
+Multiple multiple_of(const Sandwich& sandwich, const std::vector<Eigen::Matrix2Xd>& moves_px) {
+  const auto& [solved, bread, inverse] = sandwich;
+  const SolutionMove move = moves_by_lens(sandwich, {&moves_px, 1})[0];
+  std::vector<double> gradients(moves_px.front().cols()), curvatures(moves_px.front().cols());
+  for (int i = 1; i < solved.frame_count(); ++i) {
+    const OwnVector own = move.own[i] - bread.frames[i].gain * move.shared;
+    for (int k = 0; k < std::ssize(bread.columns); ++k) {
+      const FrameObservations& f = solved.observations.plane(k)[i];
+      const FrameState state = frame_state(solved.observations, solved.motion, i, k);
+      Eigen::Matrix<double, 8, 1> local = bread.columns[k][i] * move.shared(bread.places(k));
+      local.tail(own.size()) += own;
+      const Eigen::VectorXd e = lens_errors_px({&moves_px, 1}, f, state, i);
+      for (int o = 0; o < f.count; ++o) {
+        const Transfer transfer = transfer_of(f, state, o);
+        const Eigen::Vector2d r = transfer.pixel - Eigen::Vector2d(f.u[o], f.v[o]);
+        const Eigen::Vector2d q = e.segment<2>(2 * o) + transfer.jacobian(state.tangents) * local;
+        gradients[f.track[o]] += q.dot(weight_of(f, o) * r);
+        curvatures[f.track[o]] += q.dot(curvature_of(f, o, r) * q);
+      }
+    }
+  }
+  const double curvature = std::accumulate(curvatures.begin(), curvatures.end(), 0.0);
+  if (!(curvature > 0)) return {};
+  const double value = -std::accumulate(gradients.begin(), gradients.end(), 0.0) / curvature;
+  double squares = 0;
+  for (std::size_t j = 0; j < gradients.size(); ++j)
+    squares += std::pow(gradients[j] + value * curvatures[j], 2);
+  return {value, std::sqrt(squares) / curvature};
 }
 
 Eigen::MatrixXd joint_covariance(const Sandwich& sandwich,

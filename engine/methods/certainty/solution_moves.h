@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-// Displacements of a solution by errors of the gyroscope and the lens.
+// Displacements of a solution by errors of the gyroscope, the lens and the readout.
 #include "engine/methods/certainty/sandwich.h"
 
 #include <cstddef>
@@ -21,6 +21,15 @@ using LensMoves = std::span<const std::vector<Eigen::Matrix2Xd>>;
 
 /// Returns the displacements by one standard deviation of each lens parameter.
 std::vector<SolutionMove> moves_by_lens(const Sandwich& sandwich, LensMoves moves_px);
+
+/// Returns by which multiple of `moves_px` the points of a solution have to move so that its errors
+/// are least, with the standard deviation of that multiple by single tracks (engine/method.md, eq.
+/// 14l).
+struct Multiple {
+  double value = 0;
+  double sigma = 0;
+};
+Multiple multiple_of(const Sandwich& sandwich, const std::vector<Eigen::Matrix2Xd>& moves_px);
 
 /// Adds the spread of the gyroscope noise, a random walk, if it is an unknown (engine/method.md,
 /// eq. 14f).

@@ -7,6 +7,7 @@
 #include "engine/methods/certainty/sandwich.h"
 #include "engine/methods/certainty/shared_information.h"
 #include "engine/methods/certainty/solution_moves.h"
+#include "engine/methods/plane/rolling_shutter.h"
 
 #include <algorithm>
 #include <cmath>
@@ -214,6 +215,40 @@ void widen(const Sandwich& sandwich,
       result);
 }
 
+/// The row delay of points that a method takes as seen at once.
+struct NeglectedRowDelay {
+  double seconds = 0;
+  std::vector<Eigen::Matrix2Xd> moves_px;  ///< by the root of its second moment
+};
+
+/// Returns the row delay of the camera or, if it is unknown and significant, by the tracks around
+/// the solution. A held gyroscope's errors look alike.
+std::optional<NeglectedRowDelay> neglected_row_delay(const SolvedPlanes& solved,
+                                                     RotationModel model) {
+  constexpr double kSignificantSigmas = 3;
+  const auto& [window, observations, motion] = solved;
+  const bool unknown = !window.row_delay;
+  if (unknown && model == RotationModel::known && window.gyro) return std::nullopt;
+  RowDelayPrior delay = window.row_delay.value_or(unknown_row_delay(window));
+  const double size_s = std::hypot(delay.mean_s, delay.sigma_s);
+  if (!(size_s > 0)) return std::nullopt;
+  const RowDelayPrior of_moves{0, size_s};
+  auto moves_px = without_rolling_shutter(window, motion, model, of_moves).row_delay_moves_px;
+  if (unknown) {
+    const auto linearized = linearize(solved, model);
+    if (!linearized) return std::nullopt;
+    const Bread bread = bread_of(solved, *linearized, model);
+    const auto inverse = inverse_information(bread.information);
+    if (!inverse) return std::nullopt;
+    const Multiple by_tracks = multiple_of({solved, bread, *inverse}, moves_px);
+    if (!(std::abs(by_tracks.value) > kSignificantSigmas * by_tracks.sigma)) return std::nullopt;
+    delay.mean_s = by_tracks.value * size_s;
+    const double moment = std::hypot(by_tracks.value, by_tracks.sigma);
+    for (Eigen::Matrix2Xd& move : moves_px) move *= moment;
+  }
+  return NeglectedRowDelay{delay.mean_s, std::move(moves_px)};
+}
+
 void add_bounds(const SolvedPlanes& solved, const Linearization& linearized, Uncertainty& result) {
   const auto bound_deg = [&](RotationModel of) {
     return normal_sigma_deg(bread_of(solved, linearized, of).information, linearized.sigma_px);
@@ -262,6 +297,7 @@ std::optional<Uncertainty> uncertainty_of(const SolvedPlanes& solved,
   if (!window.row_delay_moves_px.empty()) {
     moves_of_image.push_back(moves_by_lens(sandwich, {&window.row_delay_moves_px, 1})[0]);
     spread.add(moves_of_image.back());
+    result.shutter_sigma_deg = degrees(moves_of_image.back().shared.head<2>().norm());
   }
   add_gyro_noise(sandwich, spread);
   if (holds_gyro)
@@ -289,8 +325,15 @@ std::optional<Uncertainty> uncertainty_of(const Window& window,
                                           std::span<const Pose> cameras,
                                           RotationModel model,
                                           Centers centers) {
-  return uncertainty_of(
-      {window, plane_observations(window), motion_of(plane, cameras)}, model, centers);
+  const PlaneMotion motion = motion_of(plane, cameras);
+  const PlaneObservations observations = plane_observations(window);
+  const auto row_delay = neglected_row_delay({window, observations, motion}, model);
+  if (!row_delay) return uncertainty_of({window, observations, motion}, model, centers);
+  Window late = window;
+  late.row_delay_moves_px = row_delay->moves_px;
+  auto result = uncertainty_of({late, observations, motion}, model, centers);
+  if (result) result->neglected_row_delay_s = row_delay->seconds;
+  return result;
 }
 
 }  // namespace gpo

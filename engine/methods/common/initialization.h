@@ -63,7 +63,10 @@ struct Uncertainty {
   std::optional<double> neighbors_sigma_deg;
   /// Contribution of the gyroscope's clock, if the method takes it as exact and the tracks do not.
   std::optional<double> clock_sigma_deg;
-  std::optional<double> late_s;          ///< time offset of that clock by the tracks
+  std::optional<double> late_s;  ///< time offset of that clock by the tracks
+  /// Contribution of an uncertain readout, or of a rolling shutter that the method takes as global.
+  std::optional<double> shutter_sigma_deg;
+  std::optional<double> neglected_row_delay_s;  ///< its row delay: the camera's or the tracks'
   std::optional<double> lens_sigma_deg;  ///< contribution of the lens; nullopt if taken as exact
   /// The normal's standard deviation with a typical error of the calibration
   /// (`typical_lens_moves_px`); nullopt if the calibration has standard deviations.

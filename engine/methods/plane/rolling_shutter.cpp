@@ -106,6 +106,12 @@ Window without_rolling_shutter(const Window& window,
   return without_rolling_shutter(window, motion, velocities_of(window, motion, rotations), delay);
 }
 
+RowDelayPrior unknown_row_delay(const Window& window) {
+  const Vector2d center_px = window.K.topRightCorner<2, 1>();
+  const double rows = 2 * std::abs(window.readout_direction.dot(center_px)) + 1;
+  return {0, kReadoutSigma_s / rows};
+}
+
 std::vector<Velocity> velocities_of(const Window& window,
                                     const PlaneMotion& motion,
                                     RotationModel rotations) {

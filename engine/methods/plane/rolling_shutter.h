@@ -11,6 +11,12 @@
 
 namespace gpo {
 
+/// Standard deviation of an unknown readout time of the whole image [s].
+inline constexpr double kReadoutSigma_s = 0.02;
+
+/// Returns the prior of an unknown row delay.
+RowDelayPrior unknown_row_delay(const Window& window);
+
 /// Corrects the inliers of a window for rolling shutter (engine/method.md, eq. 11): moves them to
 /// where they would be if every row had been read at its frame's time stamp, which is that of the
 /// principal point's row. `velocities`: one per frame. Sets `row_delay_moves_px` if the delay has a

@@ -56,6 +56,7 @@ std::string normal_parts(const Uncertainty& u) {
   add("neighboring tracks", u.neighbors_sigma_deg);
   add("bent surface", u.bend_sigma_deg);
   add("late clock", u.clock_sigma_deg);
+  add("rolling shutter", u.shutter_sigma_deg);
   add("lens", u.lens_sigma_deg);
   if (u.typical_lens_sigma_deg)
     text += fmt::format("; {:.3g} deg with a typical error of the calibration",

@@ -35,7 +35,8 @@ double normal_square(const Initialization& result, const Simulation& truth) {
 
 Simulation noisy_window(std::uint64_t seed,
                         std::optional<double> bias_rad_s = std::nullopt,
-                        double late_s = 0) {
+                        double late_s = 0,
+                        double row_delay_s = 0) {
   constexpr std::array kTried{Motion::orbit, Motion::wander, Motion::arc};
   return simulate_fitted({.motion = kTried[seed % 3],
                           .frames = 20,
@@ -43,6 +44,7 @@ Simulation noisy_window(std::uint64_t seed,
                           .gyro_bias_rad_s = bias_rad_s,
                           .gyro_offset_s = late_s,
                           .reference_noise_px = 0.5,
+                          .row_delay_s = row_delay_s,
                           .seed = seed});
 }
 
@@ -163,6 +165,51 @@ TEST(HeldGyroscope, HasClockAsLateAsTheTracksTell) {
   EXPECT_LE(late_s[0].size(), 2);
   ASSERT_GT(late_s[1].size(), 20);
   EXPECT_NEAR(median(late_s[1]), 0.01, 0.003);
+}
+
+class NeglectedShutter : public testing::TestWithParam<const char*> {};
+
+/// 40 us are a readout of 19 ms.
+TEST_P(NeglectedShutter, WidensTheUncertaintyByTheRowDelayOfTheTracks) {
+  constexpr double kDelay_s = 40e-6;
+  std::vector<double> delays_s[2];
+  for (const int rolls : {0, 1}) {
+    double squares = 0;
+    int count = 0;
+    for (std::uint64_t seed = 1; seed <= 40; ++seed) {
+      const Simulation truth = noisy_window(seed, std::nullopt, 0, rolls * kDelay_s);
+      const Initialization result = resampled_by(GetParam(), truth.window);
+      if (!result.ok) continue;
+      squares += normal_square(result, truth);
+      ++count;
+      const auto& u = *result.uncertainty;
+      if (!u.neglected_row_delay_s) continue;
+      EXPECT_TRUE(u.shutter_sigma_deg && *u.shutter_sigma_deg < u.normal_sigma_deg);
+      delays_s[rolls].push_back(*u.neglected_row_delay_s);
+    }
+    ASSERT_GT(count, 35);
+    RecordProperty(rolls ? "nees_rolling" : "nees_global", std::to_string(squares / count));
+    EXPECT_LT(squares / count, 4) << rolls;
+  }
+  EXPECT_LE(delays_s[0].size(), 2);
+  ASSERT_GT(delays_s[1].size(), 25);
+  EXPECT_NEAR(median(delays_s[1]), kDelay_s, 0.25 * kDelay_s);
+}
+
+INSTANTIATE_TEST_SUITE_P(Methods,
+                         NeglectedShutter,
+                         testing::Values("gpo", "pba", "ba"),
+                         [](const auto& info) { return std::string(info.param); });
+
+TEST(KnownShutter, WidensTheUncertaintyOfMethodsThatNeglectIt) {
+  Simulation truth = noisy_window(1, std::nullopt, 0, 40e-6);
+  truth.window.row_delay = RowDelayPrior{40e-6, 1e-6};
+  const auto uncertainty = [&] { return resampled_by("pba", truth.window).uncertainty; };
+  const auto known = uncertainty();
+  ASSERT_TRUE(known && known->neglected_row_delay_s);
+  EXPECT_EQ(*known->neglected_row_delay_s, 40e-6);
+  truth.window.row_delay = RowDelayPrior{};
+  EXPECT_FALSE(uncertainty()->shutter_sigma_deg);
 }
 
 TEST(WithoutTracks, HomographiesAreThoseOfTheOtherTracks) {
