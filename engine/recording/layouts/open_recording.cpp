@@ -149,8 +149,12 @@ void add_notes(Recording& recording) {
     if (count > 0)
       notes.push_back(fmt::format("{}: {} left out, not finite", source, counted(count, what)));
   };
-  if (const auto& gyroscope = recording.gyroscope)
-    left_out(gyroscope->unmeasured, "sample", gyroscope->file.filename().string());
+  if (const auto& gyroscope = recording.gyroscope) {
+    const fs::path& file = gyroscope->file;
+    left_out(gyroscope->unmeasured,
+             "sample",
+             (file.parent_path().filename() / file.filename()).string());
+  }
   if (!recording.truth) return;
   left_out(recording.truth->unmeasured, "pose", recording.truth->source);
   for (std::string& note : notes_of(recording.truth->jumps, recording.timestamps_ns.front()))

@@ -141,7 +141,7 @@ TEST_F(EurocReader, InterpolatesAccelerationsExceptInLongGaps) {
   const auto recording = open();
   const Gyroscope& gyroscope = *recording->gyroscope;
   EXPECT_EQ(gyroscope.rates_rad_s.size(), 7U);
-  EXPECT_THAT(recording->notes, Contains("data.csv: 1 sample left out, not finite"));
+  EXPECT_THAT(recording->notes, Contains("imu0/data.csv: 1 sample left out, not finite"));
   std::vector<double> x;
   for (const Eigen::Vector3d& force : gyroscope.accelerations_m_s2) x.push_back(force.x());
   EXPECT_THAT(x, ElementsAre(0, 1, 2, IsNan(), IsNan(), 6, 7));
