@@ -254,6 +254,16 @@ int drop_unmeasured(CsvTable& table, int first, int count) {
   return static_cast<int>(dropped);
 }
 
+int drop_repeats(CsvTable& table) {
+  const auto same_time = [&](const CsvRow& a, const CsvRow& b) {
+    return csv_cell(table, a, 0) == csv_cell(table, b, 0);
+  };
+  const auto repeats = std::unique(table.rows.begin(), table.rows.end(), same_time);
+  const auto count = static_cast<int>(table.rows.end() - repeats);
+  table.rows.erase(repeats, table.rows.end());
+  return count;
+}
+
 double csv_number(const CsvTable& table, const CsvRow& row, int column) {
   const std::string_view cell = csv_cell(table, row, column);
   const auto value = parse_number(cell);

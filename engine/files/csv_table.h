@@ -50,6 +50,8 @@ std::string_view csv_cell(const CsvTable& table, const CsvRow& row, int column);
 bool is_measured(const CsvTable& table, const CsvRow& row, int first, int count);
 /// Removes the other rows and returns how many. Throws InputError if no row is left.
 int drop_unmeasured(CsvTable& table, int first, int count);
+/// Removes rows with the time stamp (column 0) of the row before; returns their number.
+int drop_repeats(CsvTable& table);
 /// Returns the finite number in a cell. Throws InputError with file and line.
 double csv_number(const CsvTable& table, const CsvRow& row, int column);
 std::int64_t csv_integer(const CsvTable& table, const CsvRow& row, int column);

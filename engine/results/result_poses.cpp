@@ -38,16 +38,6 @@ TimeUnit unit_of(std::string_view text) {
   return ns ? TimeUnit::nanoseconds : TimeUnit::seconds;
 }
 
-/// Removes rows with the time stamp of the row before; returns their number.
-int drop_repeats(CsvTable& table) {
-  const auto time_of = [&](const CsvRow& row) { return csv_cell(table, row, 0); };
-  const auto same_time = [&](const CsvRow& a, const CsvRow& b) { return time_of(a) == time_of(b); };
-  const auto repeats = std::unique(table.rows.begin(), table.rows.end(), same_time);
-  const auto count = static_cast<int>(table.rows.end() - repeats);
-  table.rows.erase(repeats, table.rows.end());
-  return count;
-}
-
 ResultPoses by_time(CsvTable table, TimeUnit unit, const std::array<int, 4>& quaternion) {
   ResultPoses result;
   result.repeats = drop_repeats(table);

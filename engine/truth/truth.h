@@ -36,7 +36,7 @@ struct GroundTruth {
   std::vector<std::optional<PoseUncertainty>> uncertainties{};  ///< one per pose; empty if unknown
   bool upright = false;            ///< the world's z axis points away from gravity
   std::vector<TruthJump> jumps{};  ///< between the samples of the file, while there are frames
-  int unmeasured = 0;              ///< rows of the file that are not finite, left out
+  int left_out = 0;                ///< rows of the file that are not finite or repeat a time
 };
 
 /// The truth of one window, in the truth's own world.

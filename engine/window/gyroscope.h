@@ -26,9 +26,9 @@ struct Gyroscope {
   std::int64_t time_offset_ns = 0;  ///< gyroscope clock = camera clock + offset
   Eigen::Vector3d bias_rad_s = Eigen::Vector3d::Zero();
   double bias_sigma_rad_s = kUnknownBiasSigma_rad_s;  ///< each axis
-  double noise_density = 3e-4;             ///< white noise [rad/s/sqrt(Hz)]; default: a phone
-  int unmeasured = 0;                      ///< samples of the file that are not finite, left out
-  bool bias_known = false;                 ///< read from a file
+  double noise_density = 3e-4;  ///< white noise [rad/s/sqrt(Hz)]; default: a phone
+  int left_out = 0;             ///< samples of the file that are not finite or repeat a time
+  bool bias_known = false;      ///< read from a file
   std::string bias_source = "none: zero";  ///< for people
 };
 

@@ -6,6 +6,7 @@
 #include "engine/methods/certainty/sandwich.h"
 #include "engine/methods/certainty/shared_information.h"
 #include "engine/methods/plane/plane_weights.h"
+#include "engine/methods/plane/rolling_shutter.h"
 
 #include <algorithm>
 #include <cmath>
@@ -243,13 +244,23 @@ void widen_by_systematic_errors(const SolvedPlanes& solved,
   const auto& [Y, K] = shared;
   const int gyro = static_cast<int>(Y.rows() - 2 - 3 * std::ssize(u.others));
   if (!(ratio > 1)) return;
+  // Information about an unknown with this prior, of which the images' share becomes smaller.
+  const auto less = [&](double information, double prior_sigma) {
+    return information / ratio + (1 - 1 / ratio) / (prior_sigma * prior_sigma);
+  };
+  if (u.row_delay_sigma_s) {
+    const Window& window = solved.window;
+    const double prior_s = window.row_delay.value_or(unknown_row_delay(window)).sigma_s;
+    if (prior_s > 0)
+      u.row_delay_sigma_s = 1 / std::sqrt(less(std::pow(*u.row_delay_sigma_s, -2), prior_s));
+  }
   const auto information = inverse_information(Y);
   if (!information) return;
   SharedMatrix wide = *information / ratio;
   for (int k = 0; k < gyro; ++k) {
     const GyroSensitivity& prior = *solved.window.gyro;
     const double sigma = k < 3 ? prior.prior_sigma_rad_s : prior.time_offset_sigma_s;
-    wide(k, k) += (1 - 1 / ratio) / (sigma * sigma);
+    wide(k, k) = less((*information)(k, k), sigma);
   }
   const auto widened = inverse_information(wide);
   if (!widened) return;

@@ -27,9 +27,9 @@ struct SharedMoves {
   Eigen::MatrixXd results;  ///< d(rows of the joint covariance) / d(these unknowns)
 };
 
-/// Widens the covariances of centers, poses, bias, time offset and distances as errors that
-/// neighboring tracks share and bends widen the normal's variance by `ratio`: by the moves of the
-/// shared unknowns, up to their priors (engine/method.md, eq. 14k). The joint covariance stays.
+/// Widens the covariances of centers, poses, bias, time offset, row delay and distances as errors
+/// that neighboring tracks share and bends widen the normal's variance by `ratio`: by the moves of
+/// the shared unknowns, up to their priors (engine/method.md, eq. 14k). The joint covariance stays.
 void widen_by_systematic_errors(const SolvedPlanes& solved,
                                 double ratio,
                                 const SharedMoves& shared,

@@ -30,7 +30,7 @@ constexpr double kMostSeconds = 1e6;
 
 PosePath path_of(CsvTable table, TimeUnit unit, const std::array<int, 4>& quaternion) {
   PosePath path;
-  path.unmeasured = drop_unmeasured(table, 1, 7);
+  path.left_out = drop_repeats(table) + drop_unmeasured(table, 1, 7);
   path.timestamps_ns = csv_time_stamps(table, unit);
   path.longest_gap_ns = usual_longest_gap_ns(path.timestamps_ns);
   for (const auto& row : table.rows) path.poses.push_back(csv_pose(table, row, 1, quaternion));
@@ -75,7 +75,8 @@ Pose csv_pose(const CsvTable& table,
 }
 
 Gyroscope read_gyroscope(const fs::path& file, TimeUnit unit) {
-  const CsvTable table = read_csv(file, {"timestamp", "wx", "wy", "wz"}, CsvColumns::at_least);
+  CsvTable table = read_csv(file, {"timestamp", "wx", "wy", "wz"}, CsvColumns::at_least);
+  const int repeats = drop_repeats(table);
   const auto times_ns = csv_time_stamps(table, unit);
   const double scale = rad_s_per_unit(table);
   const bool accelerations =
@@ -100,7 +101,7 @@ Gyroscope read_gyroscope(const fs::path& file, TimeUnit unit) {
       forces.specific_force.push_back(vector(row, 4));
     }
   }
-  gyroscope.unmeasured = static_cast<int>(times_ns.size() - gyroscope.rates_rad_s.size());
+  gyroscope.left_out = repeats + static_cast<int>(times_ns.size() - gyroscope.rates_rad_s.size());
   if (gyroscope.rates_rad_s.empty())
     csv_fail(table, table.rows.front().line, "no row of finite rates", "some");
   add_accelerations(forces, gyroscope);
@@ -210,7 +211,7 @@ GroundTruth camera_truth(const PosePath& path,
                      ? std::move(source)
                      : fmt::format("{}{}{}", source, kOriginally, mounting.source);
   truth.upright = mounting.upright.value_or(false);
-  truth.unmeasured = path.unmeasured;
+  truth.left_out = path.left_out;
   for (const std::int64_t time : frame_times_ns) {
     const auto measured = pose_at(path, time + mounting.time_offset_ns);
     truth.poses.push_back(measured ? std::optional(*measured * mounting.T_measured_camera)

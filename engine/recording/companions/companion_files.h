@@ -89,10 +89,10 @@ void set_bias(Gyroscope& gyroscope, const ImuCalibration& calibration, const cha
 
 /// Poses over time of the frame that a truth file measures: the body, a camera or markers.
 struct PosePath {
-  std::vector<std::int64_t> timestamps_ns;              ///< strictly ascending
-  std::vector<Pose> poses;                              ///< in the truth's world [m]
-  std::int64_t longest_gap_ns = 0;                      ///< largest gap to interpolate
-  int unmeasured = 0;                                   ///< rows that are not finite, left out
+  std::vector<std::int64_t> timestamps_ns;  ///< strictly ascending
+  std::vector<Pose> poses;                  ///< in the truth's world [m]
+  std::int64_t longest_gap_ns = 0;          ///< largest gap to interpolate
+  int left_out = 0;                         ///< rows that are not finite or repeat a time
   std::optional<Eigen::Vector3d> mean_gyro_bias_rad_s;  ///< if the file has the columns
 };
 

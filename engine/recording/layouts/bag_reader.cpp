@@ -101,7 +101,7 @@ Gyroscope gyroscope_of(const OpenedBag& opened) {
       forces.specific_force.push_back(*sample.linear_acceleration);
     }
     if (!sample.angular_velocity->allFinite()) {
-      ++gyroscope.unmeasured;
+      ++gyroscope.left_out;
       continue;
     }
     gyroscope.timestamps_ns.push_back(sample.header.stamp_ns);
@@ -156,7 +156,7 @@ PosePath path_of(const OpenedBag& opened) {
   PosePath path;
   for (const PoseMessage& one : opened.contents.truth) {
     if (!one.position.allFinite() || !one.quaternion_xyzw.allFinite()) {
-      ++path.unmeasured;
+      ++path.left_out;
       continue;
     }
     const auto pose = one.pose();

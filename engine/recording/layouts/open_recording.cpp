@@ -145,18 +145,19 @@ void add_notes(Recording& recording) {
     notes.push_back("the ground truth covers no frame: " + recording.truth->source);
   else if (!recording.plane)
     notes.emplace_back("no plane.yaml: no plane errors");
-  const auto left_out = [&](int count, const char* what, const std::string& source) {
+  const auto note_left_out = [&](int count, const char* what, const std::string& source) {
     if (count > 0)
-      notes.push_back(fmt::format("{}: {} left out, not finite", source, counted(count, what)));
+      notes.push_back(fmt::format("{}: {} left out: not finite, or with the time of the one before",
+                                  source,
+                                  counted(count, what)));
   };
   if (const auto& gyroscope = recording.gyroscope) {
     const fs::path& file = gyroscope->file;
-    left_out(gyroscope->unmeasured,
-             "sample",
-             (file.parent_path().filename() / file.filename()).string());
+    note_left_out(
+        gyroscope->left_out, "sample", (file.parent_path().filename() / file.filename()).string());
   }
   if (!recording.truth) return;
-  left_out(recording.truth->unmeasured, "pose", recording.truth->source);
+  note_left_out(recording.truth->left_out, "pose", recording.truth->source);
   for (std::string& note : notes_of(recording.truth->jumps, recording.timestamps_ns.front()))
     notes.push_back(std::move(note));
 }

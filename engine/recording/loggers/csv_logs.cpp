@@ -53,7 +53,7 @@ Gyroscope gyroscope_of(CsvTable& table, const std::array<std::string, 4>& names)
   std::array<int, 4> columns{};
   for (int k = 0; k < 4; ++k) columns[k] = column_of(table, names[k]);
   Gyroscope gyroscope;
-  for (int k = 1; k < 4; ++k) gyroscope.unmeasured += drop_unmeasured(table, columns[k], 1);
+  for (int k = 1; k < 4; ++k) gyroscope.left_out += drop_unmeasured(table, columns[k], 1);
   gyroscope.file = table.file;
   for (const CsvRow& row : table.rows) {
     const auto time_ns = parse_decimal(csv_cell(table, row, columns[0]), 9);
@@ -344,7 +344,7 @@ Log read_gcsv(const fs::path& file) {
                            });
   Gyroscope gyroscope;
   gyroscope.file = file;
-  gyroscope.unmeasured = drop_unmeasured(table, 1, 3);
+  gyroscope.left_out = drop_unmeasured(table, 1, 3);
   AccelerationSamples forces;
   for (const CsvRow& row : table.rows) {
     const double time_s = tscale * csv_number(table, row, 0);

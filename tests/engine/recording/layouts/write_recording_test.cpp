@@ -79,7 +79,7 @@ TEST_P(WrittenBag, OpensWithoutSamplesThatAreNotFinite) {
   write_recording(changed, changed.truth, GetParam(), file);
   const auto written = open_recording(file);
   ASSERT_EQ(written->gyroscope->rates_rad_s.size(), gyroscope.rates_rad_s.size() - 1);
-  EXPECT_EQ(written->gyroscope->unmeasured, 1);
+  EXPECT_EQ(written->gyroscope->left_out, 1);
   EXPECT_EQ(written->gyroscope->accelerations_m_s2[2], gyroscope.accelerations_m_s2[3]);
   EXPECT_LT((written->gyroscope->accelerations_m_s2[3] - between).norm(), 1e-12);
 }
