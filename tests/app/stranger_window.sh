@@ -40,8 +40,8 @@ until_true "the video to be opened" opened "room.mp4 – the camera is a guess �
 step step-1-dropped
 key --window "$window" Escape  # closes the card of the tour
 
-# 2. The banner says that the window failed, and offers a calibration. Its report asks for a yes.
-click 730 47
+# 2. The menu bar offers a calibration, since the camera is a guess. Its report asks for a yes.
+click 366 13
 until_true "the camera to be calibrated" opened "room.mp4 – "
 step step-2-calibrated
 click 373 435
