@@ -143,6 +143,7 @@ done
 # A signal after the output, while the program exits: the work is done.
 for ((i = 0; i < 6 * rounds; ++i)); do
   result=0
+  : >"$work/log"  # the last one's would send the signal before the program's first line
   start run sequences/desk --frames 30
   until [ -s "$work/log" ] || ! kill -0 "$pid" 2>/dev/null; do sleep 0.002; done
   kill -TERM "$pid" 2>/dev/null || true

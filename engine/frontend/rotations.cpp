@@ -153,9 +153,7 @@ double structure_share(const WindowRays& rays,
 }
 
 Rotations ambiguous_on_plane(const char* name) {
-  return {{},
-          fmt::format("{} rotations: ambiguous, nearly all tracks lie on one plane; use averaging",
-                      name)};
+  return {{}, fmt::format("{} rotations: ambiguous, nearly all tracks lie on one plane", name)};
 }
 
 std::vector<bool> trusted(const WindowRays& rays, const std::vector<JoinedPair>& pairs) {
