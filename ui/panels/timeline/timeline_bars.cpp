@@ -93,7 +93,7 @@ void write_legend(LegendLine& legend, const Inspection& inspection, bool compact
     legend.sign(Sign::cross, color_of(Role::bad), 6, 16);
     return legend.write("not initialized", Role::text);
   }
-  legend.write("window up to here:", Role::text_dim);
+  if (!compact) legend.write("window up to here:", Role::text_dim);
   for (const Readiness readiness : {Readiness::ready, Readiness::weak, Readiness::degenerate}) {
     const SignStyle look = style_of(readiness);
     legend.sign(look.sign, look.rgb, 14, 23);
@@ -101,9 +101,12 @@ void write_legend(LegendLine& legend, const Inspection& inspection, bool compact
   }
   legend.skip(16);
   legend.write("height: tracks", Role::text_dim);
+  bool first = true;
   for (const int k : other_planes(*inspection.window)) {
     legend.sign(Sign::disc, plane_color(k), 12, 20);
-    legend.write(plane_title(inspection, k), Role::text_dim);
+    const std::string number = std::to_string(k + 1);
+    legend.write(first || !compact ? plane_title(inspection, k) : number, Role::text_dim);
+    first = false;
   }
   legend.skip(8);
   legend.write("gray: outliers", Role::text_dim);
