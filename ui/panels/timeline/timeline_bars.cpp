@@ -87,13 +87,17 @@ bool shows_a_start(const StartScan& scan, const TimeAxis& axis) {
   });
 }
 
-/// `compact` leaves out words so that narrow windows show the whole legend.
-void write_legend(LegendLine& legend, const Inspection& inspection, bool compact) {
+/// How many words the legend leaves out, so that narrow windows and many planes show all of it.
+enum class Brevity { full, compact, shortest };
+
+void write_legend(LegendLine& legend, const Inspection& inspection, Brevity brevity) {
+  const bool compact = brevity != Brevity::full;
+  const bool shortest = brevity == Brevity::shortest;
   if (inspection.initialization && !inspection.initialization->ok) {
     legend.sign(Sign::cross, color_of(Role::bad), 6, 16);
     return legend.write("not initialized", Role::text);
   }
-  if (!compact) legend.write("window up to here:", Role::text_dim);
+  if (!shortest) legend.write("window up to here:", Role::text_dim);
   for (const Readiness readiness : {Readiness::ready, Readiness::weak, Readiness::degenerate}) {
     const SignStyle look = style_of(readiness);
     legend.sign(look.sign, look.rgb, 14, 23);
@@ -105,7 +109,7 @@ void write_legend(LegendLine& legend, const Inspection& inspection, bool compact
   for (const int k : other_planes(*inspection.window)) {
     legend.sign(Sign::disc, plane_color(k), 12, 20);
     const std::string number = std::to_string(k + 1);
-    legend.write(first || !compact ? plane_title(inspection, k) : number, Role::text_dim);
+    legend.write(first || !shortest ? plane_title(inspection, k) : number, Role::text_dim);
     first = false;
   }
   legend.skip(8);
@@ -295,10 +299,14 @@ void draw_bookmarks(const BarArea& area, std::span<const Bookmark> bookmarks) {
 }
 
 void draw_verdict_legend(const BarArea& area, const Inspection& shown, float left, float right) {
-  LegendLine measured{.area = area, .left = left, .drawn = false};
-  write_legend(measured, shown, false);
+  using enum Brevity;
+  const auto fits = [&](Brevity brevity) {
+    LegendLine measured{.area = area, .left = left, .drawn = false};
+    write_legend(measured, shown, brevity);
+    return measured.left <= right;
+  };
   LegendLine legend{.area = area, .left = left};
-  write_legend(legend, shown, measured.left > right);
+  write_legend(legend, shown, fits(full) ? full : fits(compact) ? compact : shortest);
 }
 
 const ScannedStart* start_at(const StartScan& scan, int frame) {
