@@ -36,7 +36,15 @@ TEST_P(HeldOutHalves, DisagreeByLessThanThreeStandardDeviations) {
   }
   const CameraCalibration a = calibrate_camera(halves[0], board);
   const CameraCalibration b = calibrate_camera(halves[1], board);
-  ASSERT_TRUE(a.ok && b.ok) << a.reason << b.reason;
+  if (!a.ok || !b.ok) {
+    // A refused half claims nothing; then the whole must say how little it knows.
+    EXPECT_THAT(a.reason + b.reason, testing::HasSubstr("film the board from more sides"));
+    const CameraCalibration whole = calibrate_camera(all, board);
+    ASSERT_TRUE(whole.ok) << whole.reason;
+    constexpr int kCx = 2;
+    EXPECT_GT(whole.sigmas[kCx], 0.02 * whole.camera.cx);
+    return;
+  }
   const auto of_a = parameters(a.camera), of_b = parameters(b.camera);
   for (std::size_t k = 0; k < 2; ++k)  // fx, fy
     EXPECT_LT(std::abs(of_a[k] - of_b[k]), 3 * std::hypot(a.sigmas[k], b.sigmas[k]))
