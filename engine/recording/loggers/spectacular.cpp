@@ -3,6 +3,7 @@
 #include "engine/files/refuse.h"
 #include "engine/files/text_file.h"
 #include "engine/geometry/decompositions.h"
+#include "engine/recording/companions/companion_files.h"
 #include "engine/recording/loggers/logs.h"
 
 #include <algorithm>

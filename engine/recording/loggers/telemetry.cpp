@@ -3,6 +3,7 @@
 #include "engine/files/byte_cursor.h"
 #include "engine/files/refuse.h"
 #include "engine/files/text_file.h"
+#include "engine/recording/companions/companion_files.h"
 #include "engine/recording/images/libav.h"
 #include "engine/recording/loggers/logs.h"
 
