@@ -376,10 +376,9 @@ ordered_json to_json(const Inspection& inspection) {
   if (inspection.metric_scale_from)
     json["inertial"]["scale_known_at_frame"] = window.start + *inspection.metric_scale_from;
   add_world(inspection, json);
-  Verdict unjudged;
-  unjudged.reason = result.reason;
   if (result.verdict || !result.ok)
-    json["verdict"] = verdict_json(result.verdict.value_or(unjudged), window);
+    json["verdict"] =
+        verdict_json(result.verdict.value_or(Verdict{.reason = result.reason}), window);
   if (!inspection.growth.empty()) json["growth"] = growth_json(inspection.growth);
   if (!result.candidates.empty())
     json["candidates"] = array_json(

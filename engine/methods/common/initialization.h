@@ -132,11 +132,11 @@ struct Verdict {
   Readiness readiness = Readiness::degenerate;
   std::string reason = {};  ///< one sentence with numbers, for people
   /// The result's, with the lens assumed (`Lens`); without a result the window's.
-  std::optional<double> normal_sigma_deg;
-  std::optional<double> rotation_rms_px;      ///< residual of the best rotation of each frame
-  std::optional<double> noise_px;             ///< one coordinate, residual of the homographies
-  std::optional<double> largest_translation;  ///< largest |tau| [plane distance]
-  SceneKind scene = SceneKind::unknown;       ///< known if inliers are chosen by planes
+  std::optional<double> normal_sigma_deg{};
+  std::optional<double> rotation_rms_px{};      ///< residual of the best rotation of each frame
+  std::optional<double> noise_px{};             ///< one coordinate, residual of the homographies
+  std::optional<double> largest_translation{};  ///< largest |tau| [plane distance]
+  SceneKind scene = SceneKind::unknown;         ///< known if inliers are chosen by planes
   std::optional<SceneCriterion> criterion = std::nullopt;
 };
 
