@@ -128,7 +128,9 @@ void add_frames(Log& log, const fs::path& file) {
 void add_poses(Log& log, const fs::path& file, const Eigen::Matrix3d& R_body_camera) {
   CsvTable table = read_csv(file, {"timestamp", "", "", "", "", "", "", ""}, CsvColumns::at_least);
   PosePath path;
-  drop_unmeasured(table, 1, 7);
+  if (const int count = drop_unmeasured(table, 1, 7); count > 0)
+    log.notes.push_back(fmt::format(
+        "{}: {} left out: not finite", file.filename().string(), counted(count, "pose")));
   path.timestamps_ns = csv_time_stamps(table, TimeUnit::seconds);
   path.longest_gap_ns = usual_longest_gap_ns(path.timestamps_ns);
   for (const CsvRow& row : table.rows) {
@@ -152,7 +154,6 @@ CsvTable phone_samples(const fs::path& file) {
     last_ns = time_ns;
     return false;
   });
-  drop_unmeasured(table, 1, 3);
   return table;
 }
 
@@ -298,8 +299,9 @@ Log read_ios_logger(const fs::path& folder) {
   add_phone_poses(log, folder);
   const auto rates = first_of(folder, {"Gyro.txt", "gyro.csv", "gyroscope.csv"});
   if (!rates) return log;
-  const CsvTable table = phone_samples(*rates);
+  CsvTable table = phone_samples(*rates);
   Gyroscope& gyroscope = log.gyroscope.emplace();
+  gyroscope.left_out = drop_unmeasured(table, 1, 3);
   gyroscope.file = log.file = *rates;
   const auto times_ns = csv_time_stamps(table, TimeUnit::seconds);
   for (std::size_t i = 0; i < table.rows.size(); ++i) {

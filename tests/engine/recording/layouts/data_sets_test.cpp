@@ -233,6 +233,10 @@ TEST_F(DataSets, ReadsAnIosLog) {
   // An upright phone at rest.
   EXPECT_TRUE(recording->gyroscope->accelerations_m_s2.at(50).isApprox(
       Eigen::Vector3d(0, 9.80665, 0), 1e-9));
+  folder.write("Gyro.txt", log.rates + "5001.5,nan,0,0\n");
+  folder.write("ARposes.txt", log.poses + "5001.5,nan,0,0,1,0,0,0\n");
+  EXPECT_THAT(open()->notes, Contains(HasSubstr("Gyro.txt: 1 sample left out")));
+  EXPECT_THAT(open()->notes, Contains(HasSubstr("ARposes.txt: 1 pose left out")));
 }
 
 /// The data set's calibration by Kalibr: the camera of an upright phone has its x axis.
