@@ -258,8 +258,11 @@ void draw_extrapolated_frame(const Canvas& canvas) {
     canvas.list.AddLine(to_imgui(start), to_imgui(end), imgui_color(Role::uncertain), 3 * s);
 }
 
+/// A box on the screen: its least and greatest corner.
+using Box = std::pair<ImVec2, ImVec2>;
+
 /// Returns the share of a box that a rectangle covers.
-double covered_share(const ScreenRect& rect, const std::pair<ImVec2, ImVec2>& box) {
+double covered_share(const ScreenRect& rect, const Box& box) {
   const Eigen::AlignedBox2d covering(rect.min, rect.min + rect.size);
   const Eigen::AlignedBox2d covered(Vector2d(box.first.x, box.first.y),
                                     Vector2d(box.second.x, box.second.y));
@@ -267,37 +270,45 @@ double covered_share(const ScreenRect& rect, const std::pair<ImVec2, ImVec2>& bo
   return both.isEmpty() || covered.volume() <= 0 ? 0 : both.volume() / covered.volume();
 }
 
-/// Returns how much a rectangle covers in all frames of the window: tracks, and cubes, of which
-/// each counts as many tracks.
-double covered_by(const ScreenRect& rect, const Canvas& canvas) {
-  constexpr double kTracksPerCube = 40;
+/// Returns the boxes of the cubes in all frames of the window.
+std::vector<Box> cube_boxes(const Canvas& canvas) {
   const Inspection& inspection = canvas.inspection;
-  const Tracks& tracks = *inspection.tracks;
-  const ViewToggles& show = canvas.options.show;
+  std::vector<Box> boxes;
+  if (!canvas.options.show.cube || !inspection.initialization->ok) return boxes;
+  const int frames = std::min(inspection.window->frame_count(), inspection.tracks->frame_count());
+  for (int i = 0; i < frames; ++i)
+    for (const CubeAnchor& anchor : cubes_far_to_near(inspection, i))
+      boxes.push_back(bounds(canvas, cube_on(inspection, i, anchor, canvas.cube_size())));
+  return boxes;
+}
+
+/// Returns the number of tracks that a rectangle covers in all frames of the window.
+double covered_tracks(const ScreenRect& rect, const Canvas& canvas) {
+  const Tracks& tracks = *canvas.inspection.tracks;
+  if (!canvas.options.show.tracks) return 0;
   const Eigen::AlignedBox2d box(rect.min, rect.min + rect.size);
-  double covered = 0;
-  for (int i = 0; i < std::min(inspection.window->frame_count(), tracks.frame_count()); ++i) {
-    for (int track = 0; show.tracks && track < tracks.track_count(); ++track)
-      if (tracks.seen(i, track))
-        covered += box.contains(to_screen(canvas.mapping, tracks.raw_px[i].col(track))) ? 1 : 0;
-    if (!show.cube || !inspection.initialization->ok) continue;
-    for (const CubeAnchor& anchor : cubes_far_to_near(inspection, i)) {
-      const CubeImage cube = cube_on(inspection, i, anchor, canvas.cube_size());
-      covered += kTracksPerCube * covered_share(rect, bounds(canvas, cube));
-    }
-  }
+  int covered = 0;
+  for (int i = 0; i < std::min(canvas.inspection.window->frame_count(), tracks.frame_count()); ++i)
+    for (int track = 0; track < tracks.track_count(); ++track)
+      covered += tracks.seen(i, track) &&
+                 box.contains(to_screen(canvas.mapping, tracks.raw_px[i].col(track)));
   return covered;
 }
 
-/// Returns the corner in which a legend covers least. It is the same for all frames of the window,
-/// so that it stays in its place in a movie.
+/// Returns the corner in which a legend covers least, where each cube counts as many tracks. It is
+/// the same for all frames of the window, so that it stays in its place in a movie.
 Corner legend_corner(const Canvas& canvas, const std::string& title, const LegendRows& rows) {
+  constexpr double kTracksPerCube = 40;
   constexpr std::array kCorners = {
       Corner::top_left, Corner::top_right, Corner::bottom_left, Corner::bottom_right};
+  const std::vector<Box> cubes = cube_boxes(canvas);
   // Below is the badge of a failure.
   const std::size_t candidates = canvas.inspection.initialization->ok ? kCorners.size() : 2;
   return *std::ranges::min_element(std::span(kCorners).first(candidates), {}, [&](Corner corner) {
-    return covered_by(legend_place(canvas.rect, corner, title, rows), canvas);
+    const ScreenRect rect = legend_place(canvas.rect, corner, title, rows);
+    double covered = covered_tracks(rect, canvas);
+    for (const Box& cube : cubes) covered += kTracksPerCube * covered_share(rect, cube);
+    return covered;
   });
 }
 
