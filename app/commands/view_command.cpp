@@ -93,6 +93,7 @@ struct Session {
     window.bind();
     const Commands commands = host.draw(seconds);
     window.swap();
+    host.live.note_shown(host.state);
     for (const Command& command : commands) apply(host.state, command);
     if (!commands.empty()) saver.note_change();
     return !commands.empty();

@@ -38,7 +38,7 @@ class LiveHostTest : public testing::Test {
     live_.hooks.camera_of = [](const SourceAddress& address, const std::string&, cv::Size) {
       return std::optional(LiveCamera{address.recording->camera, address.recording->camera_source});
     };
-    live_.hooks.clock = {.now_ns = [] { return kBegin_ns; },
+    live_.hooks.clock = {.now_ns = [this] { return kBegin_ns + later_ns_; },
                          .wait_until =
                              [this](std::int64_t time_ns, const std::stop_token& stop) {
                                while (time_ns > kBegin_ns + shown_ns_ && !stop.stop_requested())
@@ -81,6 +81,7 @@ class LiveHostTest : public testing::Test {
 
   static constexpr std::int64_t kBegin_ns = 1'700'000'000'000'000'000;
   std::atomic<std::int64_t> shown_ns_ = 0;  ///< time up to which images are released
+  std::atomic<std::int64_t> later_ns_ = 0;  ///< of the clock, beyond the first images
   int shown_ = -1;
   std::atomic<int> opened_ = 0;
   WorkbenchState state_;
@@ -93,6 +94,22 @@ class LiveHostTest : public testing::Test {
   }};
   LiveHost live_{{}};
 };
+
+TEST_F(LiveHostTest, MeasuresTheDelayOfShownImages) {
+  open_live();
+  show_until(1);
+  EXPECT_THAT(counts_text(*state_.live), Not(HasSubstr("shown after")));
+  for (const std::int64_t late_ms : {40, 45, 300}) {
+    later_ns_ += 1'000'000'000;
+    show_until(shown_ + 1);
+    later_ns_ += late_ms * 1'000'000;
+    live_.note_shown(state_);
+    later_ns_ += 999'000'000;
+    live_.note_shown(state_);  // the same image
+  }
+  pump();
+  EXPECT_THAT(counts_text(*state_.live), HasSubstr("0 dropped \u00b7 shown after 45 ms"));
+}
 
 TEST_F(LiveHostTest, ShowsAGrowingWindowAndFreezesIt) {
   open_live();

@@ -112,6 +112,7 @@ void LiveWindow::note(const LiveTask& noted) {
 
 LiveTask LiveWindow::task() const {
   LiveTask task = found_;
+  task.arrived_ns = images_.back().arrived_ns;
   task.recording =
       std::make_shared<const Recording>(live_recording(origin_, images_of_window(images_)));
   if (tracker_) task.tracks = std::make_shared<const Tracks>(tracker_->tracks());

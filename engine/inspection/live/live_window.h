@@ -7,6 +7,7 @@
 #include "engine/recording/live/live_recording.h"
 
 #include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <stop_token>
@@ -27,8 +28,9 @@ struct LiveWindowOptions {
 struct LiveTask {
   std::shared_ptr<const Recording> recording;  ///< the window's frames so far
   std::shared_ptr<const Tracks> tracks;        ///< in all of them
+  std::int64_t arrived_ns = 0;                 ///< arrival of the last frame (`LiveImage`)
   int window = 0;                              ///< counts the windows of a source
-  int halvings = 0;      ///< how often every second frame was left out
+  int halvings = 0;                            ///< how often every second frame was left out
   int solved = 0;        ///< frames of the longest window that was inspected before
   int ready_frames = 0;  ///< frames of the shortest one that was ready; 0: none
 };
@@ -46,6 +48,9 @@ struct LiveView {
   CaptureStatus capture = {};
   std::shared_ptr<const LiveAnswer> answer = nullptr;  ///< the latest; null before the first image
   std::string why_anew = {};                           ///< why its window started, one line
+  /// Time from an image's arrival until it was shown with its answer, median of the last; nullopt
+  /// before the first.
+  std::optional<double> delay_s = std::nullopt;
 };
 
 /// Tracks live images from a reference frame on, with the tracker of recordings, in a window that

@@ -61,7 +61,7 @@ void Capture::push(TimedImage image, int broken) {
     status_.message.clear();
     status_.broken = broken;
     ++status_.captured;
-    queue_.push_back({std::move(image.bgr), image.timestamp_ns, segment_});
+    queue_.push_back({std::move(image.bgr), image.timestamp_ns, segment_, last_image_ns_});
     if (std::ssize(queue_) > options_.queue) {
       queue_.pop_front();
       ++status_.dropped;

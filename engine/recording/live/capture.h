@@ -17,6 +17,7 @@ struct LiveImage {
   cv::Mat bgr;                    ///< CV_8UC3, read-only
   std::int64_t timestamp_ns = 0;  ///< later than that of the image before
   int segment = 0;                ///< grows whenever the size changes
+  std::int64_t arrived_ns = 0;    ///< by the clock of `CaptureOptions`
 };
 
 enum class CaptureState { connecting, running, stalled, ended, failed };

@@ -3,6 +3,7 @@
 #include "ui/workbench/work/live_host.h"
 
 #include "engine/base/error.h"
+#include "engine/geometry/statistics.h"
 #include "engine/recording/live/sources.h"
 
 #include <utility>
@@ -38,7 +39,8 @@ bool LiveHost::synchronize(WorkbenchState& state, WorkerLink& link, Worker& work
     report_frozen(state);
     return waits_for_frozen(state, worker);
   }
-  const LiveView view = session_->view();
+  LiveView view = session_->view();
+  if (!delays_s_.empty()) view.delay_s = median({delays_s_.begin(), delays_s_.end()});
   show_live(state, view);
   if (ends_live(state) || view.capture.is_over()) {
     freeze(state, link, worker);
@@ -48,6 +50,15 @@ bool LiveHost::synchronize(WorkbenchState& state, WorkerLink& link, Worker& work
   refuse_while_live(state);
   session_->want(state.document.settings);
   return true;
+}
+
+void LiveHost::note_shown(const WorkbenchState& state) {
+  constexpr std::size_t kMost = 61;
+  if (!state.live || !state.live->answer) return;
+  const std::int64_t arrived_ns = state.live->answer->task.arrived_ns;
+  if (std::exchange(noted_ns_, arrived_ns) == arrived_ns) return;
+  delays_s_.push_back(1e-9 * static_cast<double>(hooks.clock.now_ns() - arrived_ns));
+  if (delays_s_.size() > kMost) delays_s_.pop_front();
 }
 
 void LiveHost::open(WorkbenchState& state,
@@ -68,6 +79,7 @@ void LiveHost::open(WorkbenchState& state,
     link.loading = link.calibrating = link.finding_start = false;
     frozen_.reset();
     reported_.reset();
+    delays_s_.clear();
     LiveSessionOptions options{.camera_of = hooks.camera_of};
     options.capture.give_up_s = kGiveUp_s;
     options.capture.clock = hooks.clock;

@@ -5,6 +5,8 @@
 #include "ui/workbench/work/live_session.h"
 #include "ui/workbench/work/worker.h"
 
+#include <cstdint>
+#include <deque>
 #include <functional>
 #include <memory>
 #include <string>
@@ -33,6 +35,8 @@ class LiveHost {
   /// Fulfills requests and shows the open source. Returns whether it is shown, or frozen and not
   /// published yet, so that the worker's recording must not be.
   bool synchronize(WorkbenchState& state, WorkerLink& link, Worker& worker);
+  /// Measures the delay of the image that the window shows now.
+  void note_shown(const WorkbenchState& state);
 
  private:
   void open(WorkbenchState& state, WorkerLink& link, Worker& worker, const std::string& address);
@@ -50,6 +54,8 @@ class LiveHost {
   /// The same until it is shown, and why its source ended; empty: the user froze it.
   std::shared_ptr<const Recording> reported_;
   CaptureStatus end_;
+  std::int64_t noted_ns_ = 0;    ///< arrival of the last image in `delays_s_`
+  std::deque<double> delays_s_;  ///< delays of up to 61 images
 };
 
 }  // namespace gpo

@@ -185,6 +185,7 @@ std::string counts_text(const LiveView& view) {
                                  counted(capture.captured, "image"),
                                  capture.dropped);
   if (capture.broken > 0) text += fmt::format(", {} damaged", capture.broken);
+  if (view.delay_s) text += fmt::format(" \u00b7 shown after {:.0f} ms", 1e3 * *view.delay_s);
   return text;
 }
 
