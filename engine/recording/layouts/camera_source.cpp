@@ -8,9 +8,11 @@
 #include "engine/recording/layouts/open_recording.h"
 #include "engine/recording/loggers/logs.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <exception>
+#include <string_view>
 
 #include <exiv2/exiv2.hpp>
 #include <fmt/format.h>
@@ -46,7 +48,8 @@ std::optional<FieldOfView> view_of_angle(double diagonal_deg,
   return FieldOfView{0.5 / (fisheye ? half_rad : std::tan(half_rad)), fisheye, source};
 }
 
-/// Returns an image's EXIF; empty if it is missing or unreadable.
+/// Returns an image's EXIF; empty if it is missing or unreadable. The kind of a file follows from
+/// its content: of Exiv2's other readers, that of RIFF videos writes beyond its buffers.
 Exiv2::ExifData exif_of(const fs::path& photo) {
   static std::mutex one_at_a_time;  // required by Exiv2's XMP reader
   const std::scoped_lock lock(one_at_a_time);
@@ -54,6 +57,9 @@ Exiv2::ExifData exif_of(const fs::path& photo) {
   try {
     // An absolute path cannot be mistaken for a URL.
     const auto image = Exiv2::ImageFactory::open(fs::absolute(photo).string(), false);
+    constexpr std::array<std::string_view, 4> kRead = {
+        "image/jpeg", "image/png", "image/tiff", "image/webp"};
+    if (std::ranges::find(kRead, image->mimeType()) == kRead.end()) return {};
     image->readMetadata();
     return image->exifData();
   } catch (const std::exception&) {
