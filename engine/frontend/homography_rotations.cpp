@@ -22,8 +22,7 @@ using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
 constexpr int kLeastPairTracks = 12;
-constexpr int kLongestPair = 20;      // frames apart; pairs with the reference frame are all taken
-constexpr double kNormalCapDeg = 10;  // a candidate farther from the common normal is the twin
+constexpr double kNormalCapDeg = 10;    // a candidate farther from the common normal is the twin
 constexpr double kClearlyWorse = 2.25;  // cost ratio below which two planes are ambiguous
 constexpr double kPlausible = 9;        // cost ratio of a plane that may still be the right one
 constexpr double kClearlyApart = 2;     // ratio of rotation errors that resolves an ambiguity
@@ -45,9 +44,9 @@ std::optional<Pair> decompose_pair(const Window& window, int i, int j) {
   if (static_cast<int>(common.size()) < kLeastPairTracks) return std::nullopt;
   const Matrix2Xd from = window.points_px[i](Eigen::all, common);
   const Matrix2Xd to = window.points_px[j](Eigen::all, common);
-  const auto fitted = fit_homography(from, to);
-  if (!fitted) return std::nullopt;
-  const Matrix3d H = refine_homography(*fitted, from, to);
+  const Matrix3d start = window.H_i1[j] * window.H_i1[i].inverse();
+  if (!start.allFinite()) return std::nullopt;
+  const Matrix3d H = refine_homography(start, from, to);
   return Pair{.i = i,
               .j = j,
               .H_ji = window.K.inverse() * H * window.K,
@@ -184,9 +183,10 @@ Rotations rotations_given_plane(const Window& window,
   for (const Pair& pair : reference_pairs) relative.push_back({0, pair.j, R_wc[pair.j]});
   for (int i = 1; i < window.frame_count(); ++i) {
     if (stop.stop_requested()) return {.reason = "stopped", .stopped = true};
-    for (int j = i + 1; j < window.frame_count() && j - i <= kLongestPair; ++j) {
-      const auto pair = decompose_pair(window, i, j);
-      if (pair)
+    for (const int length : kPairLengths) {
+      const int j = i + length;
+      if (j >= window.frame_count()) break;
+      if (const auto pair = decompose_pair(window, i, j))
         relative.push_back({i, j, rotation_of(*pair, R_wc[i].transpose() * normal).transpose()});
     }
   }

@@ -8,7 +8,6 @@
 #include "engine/geometry/statistics.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <iterator>
 #include <limits>
@@ -329,9 +328,9 @@ Rotations pair_rotations(const Window& window,
   const std::vector<bool> usable = trusted(rays, reference_pairs);
   for (int i = 1; i < window.frame_count(); ++i) {
     if (stop.stop_requested()) return {.reason = "stopped", .stopped = true};
-    for (int j = i + 1; j < window.frame_count(); ++j) {
-      // Near and far ones: m log m pairs connect the frames as well as all pairs do.
-      if (!std::has_single_bit(static_cast<unsigned>(j - i))) continue;
+    for (const int length : kPairLengths) {
+      const int j = i + length;
+      if (j >= window.frame_count()) break;
       of_pair.R_ij_guess = R_wc[i].transpose() * R_wc[j];
       if (const auto pair = joined(rays, i, j, usable, of_pair)) add(i, j, pair->pose);
     }

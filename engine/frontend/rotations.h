@@ -172,6 +172,10 @@ struct RelativeRotation {
   double weight = 1;  ///< inverse variance, any unit
 };
 
+/// Numbers of frames between those whose relative rotations are averaged, besides all pairs with
+/// the reference frame. In simulated and real windows more pairs are no more accurate.
+inline constexpr int kPairLengths[] = {1, 4, 16, 64};
+
 /// Averages rotations robustly (Chatterjee & Govindu, ICCV 2013), starting from `R_wc`: least
 /// absolute deviations, then iteratively reweighted least squares. Frame 0 keeps its rotation.
 std::vector<Eigen::Matrix3d> average_rotations(std::span<const RelativeRotation> relative,
