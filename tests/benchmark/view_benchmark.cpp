@@ -96,7 +96,7 @@ void draw_scene(Canvas& canvas, int frame) {
 
 /// Drags the scene a little between frames.
 void draw_orbited(Canvas& canvas, int frame) {
-  canvas.options.moving = true;
+  canvas.options.detail = SceneDetail::dragged;
   canvas.camera.yaw_deg = 35 + 2 * frame;
   draw_scene(canvas, 0);
 }

@@ -81,7 +81,7 @@ class LiveHostTest : public testing::Test {
 
   static constexpr std::int64_t kBegin_ns = 1'700'000'000'000'000'000;
   std::atomic<std::int64_t> shown_ns_ = 0;  ///< time up to which images are released
-  std::atomic<std::int64_t> later_ns_ = 0;  ///< of the clock, beyond the first images
+  std::atomic<std::int64_t> later_ns_ = 0;  ///< ahead of `kBegin_ns`
   int shown_ = -1;
   std::atomic<int> opened_ = 0;
   WorkbenchState state_;

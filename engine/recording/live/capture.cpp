@@ -68,7 +68,6 @@ void Capture::push(TimedImage image, int broken) {
     }
   }
   arrived_.notify_all();
-  if (changed_) changed_();
 }
 
 std::string Capture::read(const OpenSource& source, const std::stop_token& stop) {

@@ -46,7 +46,8 @@ struct CaptureOptions {
 /// again every second; one that is refused before the first image fails at once. Thread-safe.
 class Capture {
  public:
-  /// `changed` is called on the capture's thread after each image and change of state.
+  /// `changed` is called on the capture's thread when the state changes, except to `running`: then
+  /// there is an image.
   explicit Capture(const SourceAddress& address,
                    const CaptureOptions& options = {},
                    std::function<void()> changed = {});

@@ -9,6 +9,10 @@ namespace gpo {
 
 struct SolidModel;
 
+/// How finely the scene is rendered. Without a graphics card the number of samples decides on the
+/// time. live: one sample per pixel; dragged: fewer pixels as well.
+enum class SceneDetail { full, live, dragged };
+
 struct ViewOptions {
   ViewToggles show = {};
   double cube_side = 0;                            ///< 0: the default [unit of the estimate]
@@ -19,8 +23,8 @@ struct ViewOptions {
   /// Its cube is the reference of `ViewToggles::exaggeration` without a true cube. Null: none.
   const Inspection* reference = nullptr;
   double reference_side = 0;  ///< side of its cube, like `cube_side`
-  bool moving = false;        ///< the user drags the scene: render it coarser, to keep up
-  ImageZoom image_zoom = {};  ///< for `draw_image_view`
+  SceneDetail detail = SceneDetail::full;
+  ImageZoom image_zoom = {};                   ///< for `draw_image_view`
   std::optional<ImageZoom> compare_zoom = {};  ///< for all columns; nullopt: around the cubes
   bool legend_line = false;  ///< the legend is in the margin, else a line over the image
   bool says_failure = true;  ///< a badge with the reason of a failed window

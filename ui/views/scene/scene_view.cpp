@@ -305,9 +305,9 @@ void build(const SceneStage& stage, bool above) {
   if (shows_uncertainty(inspection, stage.options)) add_uncertainty(stage, *grid);
 }
 
-/// Returns true if both options draw the same shapes, moving or not.
+/// Returns true if both options draw the same shapes, at whatever detail.
 bool same_shapes(ViewOptions a, const ViewOptions& b) {
-  a.moving = b.moving;
+  a.detail = b.detail;
   for (const ViewToggle& one : kViewToggles)
     if (!one.in_scene) a.show.*one.shown = b.show.*one.shown;
   for (const ViewNumber& one : kViewNumbers)
@@ -352,19 +352,18 @@ unsigned SceneView::render(const Inspection& inspection,
                            const OrbitCamera& camera,
                            cv::Size size) {
   constexpr int kSamples = 4;  // per pixel
-  constexpr double kMovingDetail = 0.5;
+  constexpr double kDraggedSize = 0.5;
   Pipeline& now = *pipeline_;
-  // Without a graphics card the number of pixels decides on the time.
-  const double detail = options.moving ? kMovingDetail : 1;
-  size = {static_cast<int>(detail * size.width), static_cast<int>(detail * size.height)};
-  const double scale = detail * overlay_scale();
+  const double of_size = options.detail == SceneDetail::dragged ? kDraggedSize : 1;
+  size = {static_cast<int>(of_size * size.width), static_cast<int>(of_size * size.height)};
+  const double scale = of_size * overlay_scale();
   const Plane& plane = inspection.initialization->plane;
   const bool above =  // the eye is on the cameras' side of the plane
       !inspection.initialization->ok || plane.normal.dot(eye(camera)) + plane.distance > 0;
   const bool built = now.texture != 0 && now.shows(inspection) &&
                      same_shapes(now.options, options) && now.above == above &&
                      now.scale == scale && now.theme == current_theme();
-  if (built && now.camera == camera && now.options.moving == options.moving && now.size == size)
+  if (built && now.camera == camera && now.options.detail == options.detail && now.size == size)
     return now.texture;
   now.inspection = inspection;
   now.camera = camera;
@@ -378,7 +377,7 @@ unsigned SceneView::render(const Inspection& inspection,
   now.renderer->SetBackground2(red(top), green(top), blue(top));
   // The shapes are kept if only the camera moves: fast enough without a graphics card.
   if (!built) build({*now.renderer, inspection, options, scale}, above);
-  now.window->SetMultiSamples(options.moving ? 0 : kSamples);
+  now.window->SetMultiSamples(options.detail == SceneDetail::full ? kSamples : 0);
   set_camera_from_orbit(*now.renderer->GetActiveCamera(), camera);
   now.renderer->ResetCameraClippingRange();
   now.texture = render_to_texture(*now.window, size.width, size.height);

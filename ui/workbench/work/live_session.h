@@ -28,7 +28,7 @@ struct LiveSessionOptions {
 /// Images are dropped rather than late, and of the windows only the newest is solved. Thread-safe.
 class LiveSession {
  public:
-  /// `changed` is called on other threads when there is a new image, answer or state.
+  /// `changed` is called on other threads when there is a new answer or state.
   LiveSession(SourceAddress address,
               const LiveSessionOptions& options,
               const std::function<void()>& changed = {});
