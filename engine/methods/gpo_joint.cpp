@@ -322,8 +322,8 @@ std::optional<joint::Solution> solve_jointly(const Task& task, const Fit& fit) {
   if (!solution || !has_twin) return solution;
   const auto twin = twin_motion(task.window, solution->motion);
   if (!twin) return solution;
-  auto other = joint::solve(
-      task.window, *twin, options, task.watch, kWorthFreeRotations * solution->solver.final_cost);
+  const joint::Rival rival{solution->solver.final_cost, kWorthFreeRotations};
+  auto other = joint::solve(task.window, *twin, options, task.watch, rival);
   return other ? better_of_twins(std::move(*solution), std::move(*other)) : solution;
 }
 

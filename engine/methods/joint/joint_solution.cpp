@@ -178,7 +178,7 @@ std::optional<Solution> solve(const Window& window,
                               const PlaneMotion& start,
                               const Options& options,
                               const Watch& watch,
-                              double most_cost) {
+                              const Rival& rival) {
   const auto begin = std::chrono::steady_clock::now();
   const Window all = with_all_observations(window);
   const PlaneObservations observations = plane_observations(all, numbers_of(start.others));
@@ -189,7 +189,7 @@ std::optional<Solution> solve(const Window& window,
                .state = model.first(start),
                .predictions = {},
                .scales = {},
-               .most_cost = most_cost};
+               .most_cost = rival.cost * rival.most_ratio};
   model.predict(at.state, at.predictions);
   at.scales.sigma_px = noise_px(model, at.predictions);
   at.scales.reference_px = at.scales.sigma_px;
@@ -217,7 +217,9 @@ std::optional<Solution> solve(const Window& window,
                     .solver = std::move(solver),
                     .scales = at.scales,
                     .row_delay_s = at.state.row_delay_s,
-                    .uncertainty = uncertainty_of(whole, at.state, at.normals, at.scales)};
+                    .uncertainty = {}};
+  if (solution.solver.final_cost > rival.cost) return solution;
+  solution.uncertainty = uncertainty_of(whole, at.state, at.normals, at.scales);
   if (!solution.uncertainty.joint_covariance.allFinite()) return std::nullopt;
   const double settled_rad =
       kSettledSigmas * std::sqrt(solution.uncertainty.normal_covariance.trace());

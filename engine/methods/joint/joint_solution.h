@@ -19,14 +19,21 @@ struct Solution {
   Uncertainty uncertainty;
 };
 
+/// Another solution of the same window.
+struct Rival {
+  double cost = std::numeric_limits<double>::infinity();
+  double most_ratio = 1;  ///< a cost that is higher than the rival's by this factor does not count
+};
+
 /// Minimizes the joint cost from a solution of the transfer error, with all observations of the
 /// tracks of the window's planes. nullopt if it is not determined, a point is behind a camera,
-/// `watch` stopped it, or its cost will be above `most_cost`.
+/// `watch` stopped it, or its cost will not count beside the rival's. A solution that costs more
+/// than the rival has no uncertainty.
 std::optional<Solution> solve(const Window& window,
                               const PlaneMotion& start,
                               const Options& options,
                               const Watch& watch,
-                              double most_cost = std::numeric_limits<double>::infinity());
+                              const Rival& rival = {});
 
 /// Returns the better one of two solutions of a window whose cost has two minima. If the other one
 /// fits as well and is close, the cost between them is flat, and half of the way to it is added to
