@@ -153,14 +153,15 @@ Beyond beyond_noise(const Window& window, const Growing& growing, const Grounds&
   PlaneMotion motion = motion_without_translation(window);
   motion.normal = growing.normal;
   for (std::size_t k = 0; k < growing.frames.size(); ++k) motion.tau[k + 1] = growing.frames[k].tau;
-  const auto u = uncertainty_of({window, plane_observations(window), motion}, window.rotations);
+  // The bias is held here, whose error affects what looks like errors of neighbors and surfaces.
+  const auto u = uncertainty_of(
+      {window, plane_observations(window), motion}, window.rotations, Errors::of_noise);
   if (!u) return {};
-  // Bend and neighbors are excluded: the bias is held here, whose error affects both.
   double flat_deg2 = u->normal_sigma_deg * u->normal_sigma_deg;
   double lens_deg2 = std::pow(normal_sigma_deg(*u, lens), 2) - flat_deg2;
-  for (const auto& part_deg : {u->bend_sigma_deg, u->neighbors_sigma_deg, u->lens_sigma_deg})
-    flat_deg2 -= part_deg.value_or(0) * part_deg.value_or(0);
-  lens_deg2 += std::pow(u->lens_sigma_deg.value_or(0), 2);
+  const double of_lens_deg2 = std::pow(u->lens_sigma_deg.value_or(0), 2);
+  flat_deg2 -= of_lens_deg2;
+  lens_deg2 += of_lens_deg2;
   const double flat_deg = std::sqrt(std::max(0.0, flat_deg2));
   return {std::max(1.0, flat_deg / *whole.normal_sigma_deg), std::sqrt(std::max(0.0, lens_deg2))};
 }

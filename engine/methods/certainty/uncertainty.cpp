@@ -261,7 +261,7 @@ void add_bounds(const SolvedPlanes& solved, const Linearization& linearized, Unc
 
 std::optional<Uncertainty> uncertainty_of(const SolvedPlanes& solved,
                                           RotationModel model,
-                                          Centers centers) {
+                                          Errors errors) {
   const auto& [window, observations, motion] = solved;
   const auto linearized = linearize(solved, model);
   if (!linearized) return std::nullopt;
@@ -283,7 +283,7 @@ std::optional<Uncertainty> uncertainty_of(const SolvedPlanes& solved,
   result.tracks = tracks_of(observations);
   OfPlanes neighbors(observations.plane_count());
   OfPlanes bends(observations.plane_count());
-  if (!holds_gyro) {
+  if (!holds_gyro && errors != Errors::of_noise) {
     neighbors = neighbors_beyond(solved, model, sigma_px, spread.shared);
     bends = bends_of(solved, sigma_px);
   }
@@ -309,7 +309,7 @@ std::optional<Uncertainty> uncertainty_of(const SolvedPlanes& solved,
   NoiseSpread all = marginals(motion, bread, spread);
   result.center_covariances = std::move(all.centers);
   for (const double v : all.distance_ratios) result.distance_ratio_sigmas.push_back(std::sqrt(v));
-  if (centers == Centers::jointly) {
+  if (errors == Errors::all_jointly) {
     result.joint_covariance =
         joint_covariance(sandwich, influences, degrees_of_freedom, moves_of_image, spread.shared);
     result.joint_bias_rows = bread.layout.gyro;
@@ -324,14 +324,14 @@ std::optional<Uncertainty> uncertainty_of(const Window& window,
                                           const Plane& plane,
                                           std::span<const Pose> cameras,
                                           RotationModel model,
-                                          Centers centers) {
+                                          Errors errors) {
   const PlaneMotion motion = motion_of(plane, cameras);
   const PlaneObservations observations = plane_observations(window);
   const auto row_delay = neglected_row_delay({window, observations, motion}, model);
-  if (!row_delay) return uncertainty_of({window, observations, motion}, model, centers);
+  if (!row_delay) return uncertainty_of({window, observations, motion}, model, errors);
   Window late = window;
   late.row_delay_moves_px = row_delay->moves_px;
-  auto result = uncertainty_of({late, observations, motion}, model, centers);
+  auto result = uncertainty_of({late, observations, motion}, model, errors);
   if (result) result->neglected_row_delay_s = row_delay->seconds;
   return result;
 }

@@ -12,9 +12,10 @@
 
 namespace gpo {
 
-/// jointly: also computes `Uncertainty::joint_covariance`, which takes 1 to 2 ms for 30 frames and
-/// grows with the square of their number.
-enum class Centers { one_by_one, jointly };
+/// of_noise: without errors of neighbors and surfaces. all_jointly: also computes
+/// `Uncertainty::joint_covariance`, which takes 1 to 2 ms for 30 frames and grows with the square
+/// of their number.
+enum class Errors { of_noise, all, all_jointly };
 
 /// Returns the uncertainty of a solution on the window's inliers, by a method for which the
 /// rotations are unknown to the extent of `rotations`. nullopt if the solution is not determined or
@@ -23,11 +24,11 @@ std::optional<Uncertainty> uncertainty_of(const Window& window,
                                           const Plane& plane,
                                           std::span<const Pose> cameras,
                                           RotationModel rotations,
-                                          Centers centers = Centers::one_by_one);
+                                          Errors errors = Errors::all);
 
 /// Returns the same for a solution over several planes with weighted observations.
 std::optional<Uncertainty> uncertainty_of(const SolvedPlanes& solved,
                                           RotationModel rotations,
-                                          Centers centers = Centers::one_by_one);
+                                          Errors errors = Errors::all);
 
 }  // namespace gpo

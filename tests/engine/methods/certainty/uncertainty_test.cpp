@@ -344,7 +344,7 @@ TEST(JointCenters, ContainCovariancesOfCentersAndBias) {
   for (const RotationModel rotations :
        {RotationModel::known, RotationModel::bias, RotationModel::free}) {
     const auto u =
-        uncertainty_of(truth.window, truth.plane, truth.cameras, rotations, Centers::jointly);
+        uncertainty_of(truth.window, truth.plane, truth.cameras, rotations, Errors::all_jointly);
     ASSERT_TRUE(u);
     const Eigen::MatrixXd& all = u->joint_covariance;
     EXPECT_EQ(u->joint_bias_rows, rotations == RotationModel::free ? 0 : 4);
