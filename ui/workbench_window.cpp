@@ -338,6 +338,7 @@ void WorkbenchHost::settle() {
 
 Commands WorkbenchHost::draw(double delta_seconds) {
   PanelInput shown = input();
+  shown.hurries = state.live.has_value();
   shown.fetcher = &fetcher_;
   shown.lister = &lister_;
   if (!reads_models_at_once) shown.models = &models_;

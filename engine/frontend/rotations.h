@@ -173,7 +173,7 @@ struct RelativeRotation {
 };
 
 /// Numbers of frames between those whose relative rotations are averaged, besides all pairs with
-/// the reference frame. In simulated and real windows more pairs are no more accurate.
+/// the reference frame. In simulated windows more pairs are no more accurate.
 inline constexpr int kPairLengths[] = {1, 4, 16, 64};
 
 /// Averages rotations robustly (Chatterjee & Govindu, ICCV 2013), starting from `R_wc`: least

@@ -112,6 +112,7 @@ struct PanelInput {
   JobStatus worker = {}, survey = {}, scan = {};
   JobStatus writing = {};  ///< progress of a movie
   bool timings = true;     ///< false: dashes instead of times, to make screenshots comparable
+  bool hurries = false;    ///< images arrive: the scene is rendered without antialiasing
   ImageFetcher* fetcher = nullptr;  ///< null: drawing decodes images itself
   ModelReader* models = nullptr;    ///< null: drawing reads 3-D models itself
   FolderLister* lister = nullptr;   ///< null: folders look empty

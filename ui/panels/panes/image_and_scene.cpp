@@ -387,7 +387,7 @@ void scene_pane(const PanelContext& ui, const Rectangle& place) {
   ViewOptions options = view_options(ui, ui.views);
   options.show.legend &= has_room_for_legend(place, ui.scale);
   options.says_failure = !ui.banner;
-  if (state.live) options.detail = SceneDetail::live;
+  if (ui.hurries) options.detail = SceneDetail::live;
   if (ImGui::IsItemActive() && ImGui::IsMouseDragging(0, 0)) options.detail = SceneDetail::dragged;
   const Area area{*ImGui::GetWindowDrawList(), rect};
   const FrameView view{inspection, state.view.frame, options};
