@@ -7,6 +7,7 @@
 #include "tests/engine/test_folder.h"
 #include "ui/workbench/actions/actions.h"
 #include "ui/workbench/work/recording_writer.h"
+#include "ui/workbench_window.h"
 
 #include <atomic>
 #include <chrono>
@@ -109,6 +110,17 @@ TEST_F(LiveHostTest, MeasuresTheDelayOfShownImages) {
   }
   pump();
   EXPECT_THAT(counts_text(*state_.live), HasSubstr("0 dropped \u00b7 shown after 45 ms"));
+}
+
+TEST_F(LiveHostTest, IsDrawnIntoPicturesInFullDetail) {
+  open_live();
+  show_until(20);
+  const cv::Size size(400, 300);
+  const auto& inspection = state_.results.inspection;
+  EXPECT_EQ(cv::norm(snapshot_live("scene", *state_.live, state_.document.settings, size),
+                     snapshot_pane("scene", inspection, state_.view.frame, size),
+                     cv::NORM_INF),
+            0);
 }
 
 TEST_F(LiveHostTest, ShowsAGrowingWindowAndFreezesIt) {

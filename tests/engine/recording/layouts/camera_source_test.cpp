@@ -155,6 +155,22 @@ TEST_F(StoredViews, ReadsTheEquivalentFocalLengthFromAVideo) {
   EXPECT_FALSE(stored_view(folder.write("b.mov", "no video")));
 }
 
+TEST_F(StoredViews, ExifIsReadOfTiffAndWebpButOfNoOtherRiffFile) {
+  constexpr std::size_t kBeforeTiff = 10;
+  const std::string tiff = exif_segment({{kEquivalentTag, 3, 26}}).substr(kBeforeTiff);
+  const auto chunk = [](const std::string& kind, const std::string& content) {
+    const std::string size = big_endian({std::ssize(content)}, 4);
+    return kind + std::string(size.rbegin(), size.rend()) + content;
+  };
+  const auto riff = [&](const std::string& kind, const std::string& extended) {
+    return chunk("RIFF",
+                 kind + chunk(extended, "\x08" + std::string(9, '\0')) + chunk("EXIF", tiff));
+  };
+  EXPECT_TRUE(stored_view(folder.write("1.tif", tiff)));
+  EXPECT_TRUE(stored_view(folder.write("1.webp", riff("WEBP", "VP8X"))));
+  EXPECT_FALSE(stored_view(folder.write("2.webp", riff("AVI ", "LIST"))));
+}
+
 TEST_F(StoredViews, OrientationInExifTurnsWhatIsShown) {
   const auto turns = [&](int orientation) {
     const std::string tiff = std::string("MM\0*", 4) + big_endian({8}, 4) + big_endian({1}, 2) +
