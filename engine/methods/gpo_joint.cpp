@@ -1,6 +1,5 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-
 #include "engine/geometry/statistics.h"
 #include "engine/methods/certainty/bends.h"
 #include "engine/methods/certainty/uncertainty.h"
@@ -13,26 +12,16 @@
 #include "engine/methods/plane/linear_solutions.h"
 #include "engine/methods/plane/plane_result.h"
 #include "engine/methods/plane/plane_solver.h"
-#include "engine/methods/plane/plane_weights.h"
 #include "engine/methods/plane/rolling_shutter.h"
+#include "engine/methods/plane_fit.h"
 
 #include <cmath>
 #include <limits>
-#include <span>
-
-#include <fmt/format.h>
 
 namespace gpo {
 namespace {
 
-/// Rounds of reweighting, each started from the previous solution. All but the last take one step.
-struct Rounds {
-  int count = 10;
-  bool start_is_weighted = false;  ///< else it is optimized without weights first
-};
 constexpr Rounds kStartRounds{2};  // for candidate starts
-/// Significance of additional unknowns: chi-square test at 4 sigma.
-constexpr double kSignificantSigmas = 4;
 /// Least ratio of the noise variances that justifies free rotations for every frame. The errors of
 /// a track on a real surface are the same in all frames, and free rotations explain part of them:
 /// in EuRoC's room, where the bias alone is right, they lower the variance by up to a sixth. Poor
@@ -40,183 +29,14 @@ constexpr double kSignificantSigmas = 4;
 constexpr double kWorthFreeRotations = 1.25;
 /// The same after one round of reweighting.
 constexpr double kMayBeWorth = 1.1;
-/// First step of the row delay [s/row]: 10 ms for 480 rows.
-constexpr double kTriedRowDelay_s = 2e-5;
-constexpr int kShutterRounds = 4;
-/// Prior of an unknown readout time: a phone's is up to 35 ms, a global shutter's 0 [s].
-
-struct RotationUnknowns {
-  RotationModel model = RotationModel::known;
-  bool gyro_noise = false;
-};
-
-/// A solution, and the window corrected for its row delay.
-struct Fit {
-  Window window;
-  PlaneSolution solution;
-  RotationUnknowns rotations;
-  double row_delay_s = 0;
-  double cost = 0;  ///< robust loss, comparable between different weights [px^2]
-  PlaneObservations observations = {};  ///< from `window`, with the weights of the last round
-};
-
-struct Task {
-  const Window& window;
-  const MethodOptions& options;
-  double sigma_px;
-  const Watch& watch;
-
-  /// automatic: for tracks with noise in the reference frame, and for a rolling shutter.
-  bool latent(double row_delay_s = 0) const {
-    if (options.error != ErrorModel::automatic) return options.error == ErrorModel::latent;
-    const bool known = options.shutter == Shutter::known && window.row_delay;
-    return !window.exact_reference || row_delay_s != 0 || (known && window.row_delay->mean_s != 0);
-  }
-};
-
-/// `observations`: from the task's window, or from one corrected for a row delay.
-PlaneSolution solve_once(const Task& task,
-                         const PlaneObservations& observations,
-                         const PlaneMotion& start,
-                         RotationUnknowns rotations,
-                         int most_steps = kMostSteps) {
-  const PlaneTask plane_task{task.window,
-                             observations,
-                             {.rotations = rotations.model,
-                              .sigma_px = task.sigma_px,
-                              .gyro_noise = rotations.gyro_noise}};
-  return task.options.solver == Solver::ceres
-             ? solve_plane_with_ceres(plane_task, start, task.watch)
-             : solve_plane(plane_task, start, task.watch, most_steps);
-}
-
-double robust_cost(const Task& task,
-                   const PlaneSolution& solution,
-                   const PlaneObservations& observations) {
-  return solution.solver.final_cost +
-         loss_beyond_weights(solution.motion, task.options, task.sigma_px, observations);
-}
-
-/// Adds the time and iterations of another solution.
-void add_effort(const SolverReport& tried, SolverReport& solver) {
-  solver.milliseconds += tried.milliseconds;
-  solver.iterations += tried.iterations;
-}
-
-Fit solve(const Task& task,
-          const PlaneMotion& start,
-          RotationUnknowns rotations,
-          const Rounds& rounds = {}) {
-  const Window& window = task.window;
-  PlaneObservations observations = plane_observations(window, numbers_of(start.others));
-  const int last = is_weighted(task.options) ? rounds.count : 0;
-  PlaneSolution solution{start, {}};
-  const int first = last > 0 && rounds.start_is_weighted ? 1 : 0;
-  for (int round = first; round <= last; ++round) {
-    if (round > 0) reweigh(solution.motion, task.options, task.sigma_px, observations);
-    const int most_steps = round == 0 || round == last ? kMostSteps : 1;
-    PlaneSolution next = solve_once(task, observations, solution.motion, rotations, most_steps);
-    const bool settled = round > 0 && next.solver.iterations <= 1 &&
-                         next.solver.termination == Termination::convergence;
-    add_effort(solution.solver, next.solver);
-    if (round > first) continue_trace(solution.solver, next.solver);
-    solution = std::move(next);
-    if (settled) break;
-  }
-  const double cost = robust_cost(task, solution, observations);
-  return {.window = window,
-          .solution = std::move(solution),
-          .rotations = rotations,
-          .cost = cost,
-          .observations = std::move(observations)};
-}
-
-void copy_weights(const PlaneObservations& from, PlaneObservations& to) {
-  for (int k = 0; k < to.plane_count(); ++k) {
-    for (std::size_t i = 0; i < to.plane(k).size(); ++i) {
-      to.plane(k)[i].mask = from.plane(k)[i].mask;
-      to.plane(k)[i].weight = from.plane(k)[i].weight;
-    }
-  }
-}
-
-/// Solves again with another row delay but the same weights, so that the costs are comparable.
-Fit refit(const Task& task,
-          const Fit& from,
-          std::span<const Velocity> velocities,
-          double row_delay_s) {
-  const PlaneMotion& motion = from.solution.motion;
-  Fit fit{.window = without_rolling_shutter(task.window, motion, velocities, {row_delay_s}),
-          .solution = {},
-          .rotations = from.rotations,
-          .row_delay_s = row_delay_s};
-  fit.observations = plane_observations(fit.window, numbers_of(motion.others));
-  copy_weights(from.observations, fit.observations);
-  fit.solution = solve_once(task, fit.observations, motion, from.rotations);
-  fit.cost = fit.solution.solver.final_cost;
-  continue_trace(from.solution.solver, fit.solution.solver);
-  return fit;
-}
-
-bool converged(const Fit& fit) {
-  return fit.solution.solver.termination == Termination::convergence;
-}
-
-int freedom(const Fit& fit) { return fit.solution.solver.residuals - fit.solution.solver.unknowns; }
-
-/// Returns the noise variance of one coordinate, estimated from the residuals [px^2].
-double variance(const Fit& fit) {
-  return 2 * fit.solution.solver.final_cost / std::max(1, freedom(fit));
-}
-
-/// Returns true if additional unknowns explain more than noise, whose variance is taken from
-/// `with`.
-bool is_significant(const Fit& without, const Fit& with, int more_unknowns) {
-  const double chi_square = 2 * (without.cost - with.cost) / variance(with);
-  return chi_square > more_unknowns + kSignificantSigmas * std::sqrt(2.0 * more_unknowns) +
-                          kSignificantSigmas * kSignificantSigmas;
-}
-
-/// Estimates the row delay by iterated parabola fits through the costs at three values, unless the
-/// shutter is global or the joint model estimates it.
-Fit with_estimated_shutter(const Task& task, const Fit& given) {
-  if (task.options.shutter == Shutter::global || task.latent()) return given;
-  Fit global = given;
-  global.cost = given.solution.solver.final_cost;  // comparable with `refit`
-  Fit best = global;
-  double step_s = kTriedRowDelay_s;
-  SolverReport effort = global.solution.solver;
-  for (int round = 0; round < kShutterRounds && !task.watch.stop_requested(); ++round) {
-    const auto velocities = velocities_of(task.window, best.solution.motion, best.rotations.model);
-    const auto with = [&](double row_delay_s) {
-      return refit(task, best, velocities, row_delay_s);
-    };
-    const Fit less = with(best.row_delay_s - step_s);
-    const Fit more = with(best.row_delay_s + step_s);
-    for (const Fit* each : {&less, &more}) add_effort(each->solution.solver, effort);
-    const auto steps = parabola_minimum(less.cost, best.cost, more.cost);
-    if (!steps) break;
-    const Fit next = with(best.row_delay_s + *steps * step_s);
-    add_effort(next.solution.solver, effort);
-    if (!(next.cost < best.cost)) break;
-    best = next;
-    if (!is_significant(global, best, 1)) break;
-    step_s /= 4;
-  }
-  Fit chosen = is_significant(global, best, 1) ? best : given;
-  chosen.cost = robust_cost(task, chosen.solution, chosen.observations);
-  chosen.solution.solver.milliseconds = effort.milliseconds;
-  chosen.solution.solver.iterations = effort.iterations;
-  return chosen;
-}
 
 /// Compares a fit with free rotations, in which the gyroscope no longer selects one of the plane's
 /// two decompositions, with the fit from its twin.
-Fit better_twin(const Task& task, Fit free) {
+Fit better_twin(const FitTask& task, Fit free) {
   auto other = twin_motion(task.window, free.solution.motion);
   if (!other) return free;
   if (!free.solution.motion.others.empty()) other->others = other_planes(task.window, *other);
-  Fit twin = with_estimated_shutter(task, solve(task, *other, {RotationModel::free}));
+  Fit twin = with_estimated_shutter(task, fit_planes(task, *other, {RotationModel::free}));
   const bool better = converged(twin) && variance(free) > kWorthFreeRotations * variance(twin);
   Fit& chosen = better ? twin : free;
   add_effort((better ? free : twin).solution.solver, chosen.solution.solver);
@@ -231,20 +51,21 @@ struct Best {
 
 /// With a gyroscope, estimates its bias and noise, unless the images determine the rotations
 /// better.
-Best best_fit(const Task& task, const PlaneMotion& start) {
+Best best_fit(const FitTask& task, const PlaneMotion& start) {
   const Window& window = task.window;
   const bool bias = window.rotations == RotationModel::bias;
   // No choice depends on the cost if the joint model follows with the same unknowns.
   const Rounds rounds{task.latent() && !bias ? 1 : Rounds{}.count, true};
   const bool noisy = bias && window.gyro->noise_density > 0;
-  Fit fit = with_estimated_shutter(task, solve(task, start, {window.rotations, noisy}, rounds));
+  Fit fit =
+      with_estimated_shutter(task, fit_planes(task, start, {window.rotations, noisy}, rounds));
   const Eigen::Vector3d bias_rad_s = fit.solution.motion.bias_rad_s;
   if (!bias) return {std::move(fit), bias_rad_s};
-  Fit free = solve(task, fit.solution.motion, {RotationModel::free}, {1, true});
+  Fit free = fit_planes(task, fit.solution.motion, {RotationModel::free}, {1, true});
   if (fit.row_delay_s != 0 || variance(fit) > kMayBeWorth * variance(free)) {
     const SolverReport first = free.solution.solver;
-    free = with_estimated_shutter(task,
-                                  solve(task, free.solution.motion, {RotationModel::free}, rounds));
+    free = with_estimated_shutter(
+        task, fit_planes(task, free.solution.motion, {RotationModel::free}, rounds));
     add_effort(first, free.solution.solver);
     const int more = freedom(fit) - freedom(free);
     if (is_significant(fit, free, more) && variance(fit) > kWorthFreeRotations * variance(free)) {
@@ -257,15 +78,15 @@ Best best_fit(const Task& task, const PlaneMotion& start) {
 }
 
 /// Optimizes a start with the main plane, then with all planes if requested.
-Fit optimized(const Task& task, const PlaneMotion& start, SolverReport& effort) {
-  Fit fit = solve(task, start, {task.window.rotations}, kStartRounds);
+Fit optimized(const FitTask& task, const PlaneMotion& start, SolverReport& effort) {
+  Fit fit = fit_planes(task, start, {task.window.rotations}, kStartRounds);
   add_effort(fit.solution.solver, effort);
   if (task.options.planes == Planes::one || task.window.planes.size() < 2 || !converged(fit))
     return fit;
   PlaneMotion with_others = fit.solution.motion;
   with_others.others = other_planes(task.window, with_others);
   if (with_others.others.empty()) return fit;
-  Fit all = solve(task, with_others, {task.window.rotations}, kStartRounds);
+  Fit all = fit_planes(task, with_others, {task.window.rotations}, kStartRounds);
   add_effort(all.solution.solver, effort);
   return converged(all) ? all : fit;
 }
@@ -279,7 +100,7 @@ double mean_cost(const Fit& fit) {
 /// Returns the best of several starts: GPO with the given rotations; GPO with the gyroscope's
 /// rotations before calibration; for several planes without a gyroscope also the twin, which fits
 /// the main plane equally well but not the others.
-PlaneMotion best_start(const Task& task, SolverReport& effort) {
+PlaneMotion best_start(const FitTask& task, SolverReport& effort) {
   std::vector<PlaneMotion> starts;
   const auto add_gpo = [&](const Window& window) {
     const PlaneSolution gpo = solve_gpo(window, {}, task.watch);
@@ -308,7 +129,7 @@ PlaneMotion best_start(const Task& task, SolverReport& effort) {
 
 /// Returns the solution of the joint model that starts at a fit. With free rotations the plane's
 /// other decomposition may fit as well.
-std::optional<joint::Solution> solve_jointly(const Task& task, const Fit& fit) {
+std::optional<joint::Solution> solve_jointly(const FitTask& task, const Fit& fit) {
   joint::Options options{.rotations = fit.rotations.model,
                          .gyro_noise = fit.rotations.gyro_noise,
                          .row_delay = std::nullopt,
@@ -353,7 +174,7 @@ Initialization initialize_gpo_joint(const Window& window,
   if (!options.time_offset && gyro_unknowns(window, window.rotations) > 3)
     return initialize_gpo_joint(with_exact_clock(window), options, watch);
   if (auto reason = reason_not_to_try(window)) return failed(*reason);
-  const Task task{window, options, homography_error_px(window) / kMedianOfRayleigh, watch};
+  const FitTask task{window, options, homography_error_px(window) / kMedianOfRayleigh, watch};
   if (options.shutter == Shutter::known && window.row_delay && !task.latent())
     return initialize_at_row_delay(window, options, watch);
   SolverReport effort;

@@ -134,7 +134,8 @@ Grounds grounds_of(const Window& window, const Growing& growing) {
   }
   const int unknowns = 3 * static_cast<int>(growing.frames.size()) + 2;
   const double sigma_px = noise_px(2 * cost, 2 * growing.observations, unknowns);
-  SharedInformation information = prior_information(window, window.rotations, sigma_px);
+  SharedInformation information =
+      prior_information(window, {0, gyro_unknowns(window, window.rotations)}, sigma_px);
   for (const LinearizedFrame& f : growing.frames) information += f.information;
   return {growing.evidence, normal_sigma_deg(information, sigma_px), travel};
 }

@@ -3,6 +3,7 @@
 #include "engine/methods/certainty/sandwich.h"
 
 #include "engine/geometry/decompositions.h"
+#include "engine/methods/certainty/shared_information.h"
 #include "engine/methods/common/window_checks.h"
 #include "engine/methods/plane/plane_weights.h"
 
@@ -54,6 +55,39 @@ double shrinkage(const Eigen::MatrixXd& moves, const Eigen::MatrixXd& independen
   sum.diagonal().array() -= sum.diagonal().mean();
   const double deviation = sum.squaredNorm();
   return deviation > 0 ? std::clamp(chance / deviation, 0.0, 1.0) : 1;
+}
+
+template <int kOwn>
+OwnMatrix inverse_of(const OwnMatrix& oo) {
+  using Matrix = Eigen::Matrix<double, kOwn, kOwn>;
+  const Eigen::LDLT<Matrix> factor(oo);
+  Matrix inverse;
+  for (int c = 0; c < kOwn; ++c)  // Eigen unrolls the solution for a single column
+    inverse.col(c) = factor.solve(Eigen::Matrix<double, kOwn, 1>::Unit(c));
+  return inverse;
+}
+
+using OwnShared = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 6, kMostShared>;
+
+/// Adds a plane's normal equations in a frame to the shared ones, and the frame's own unknowns with
+/// the shared ones to `os`. Eigen's products for large matrices take thrice the time.
+void add_plane(const Eigen::Matrix<double, 8, 8>& F,
+               const PlaneColumns& M,
+               int plane,
+               Bread& bread,
+               OwnShared& os) {
+  const PlaneColumns FM = F.lazyProduct(M);
+  const Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 7, 7> MFM =
+      M.transpose().lazyProduct(FM);
+  const int p = UnknownsLayout::of_plane(plane), n = UnknownsLayout::size_of_plane(plane);
+  const int g = bread.layout.of_gyro(), b = bread.layout.gyro;
+  SharedMatrix& shared = bread.information;
+  shared.block(p, p, n, n) += MFM.topLeftCorner(n, n);
+  shared.block(p, g, n, b) += MFM.topRightCorner(n, b);
+  shared.block(g, p, b, n) += MFM.bottomLeftCorner(b, n);
+  shared.block(g, g, b, b) += MFM.bottomRightCorner(b, b);
+  os.middleCols(p, n) += FM.leftCols(n).bottomRows(os.rows());
+  os.middleCols(g, b) += FM.rightCols(b).bottomRows(os.rows());
 }
 
 }  // namespace
@@ -130,39 +164,29 @@ Bread bread_of(const SolvedPlanes& solved, const Linearization& linearized, Rota
   const int frames = solved.frame_count();
   const int own = own_size(model, motion);
   Bread bread{.layout = {planes - 1, gyro_unknowns(window, model)}};
-  const int size = bread.layout.size();
   bread.columns.assign(planes, std::vector<PlaneColumns>(frames));
   bread.frames.resize(frames);
-  bread.prior = SharedMatrix::Zero(size, size);
-  const int gyro = bread.layout.of_gyro();
-  if (bread.layout.gyro > 0)
-    bread.prior.diagonal().segment<3>(gyro).setConstant(
-        prior_weight(linearized.sigma_px, window.gyro->prior_sigma_rad_s));
-  if (bread.layout.gyro > 3)
-    bread.prior(gyro + 3, gyro + 3) =
-        prior_weight(linearized.sigma_px, window.gyro->time_offset_sigma_s);
+  bread.prior = prior_information(window, bread.layout, linearized.sigma_px);
   bread.information = bread.prior;
   if (model == RotationModel::bias && own == 6) bread.noise_weights.resize(frames);
   for (int i = 1; i < frames; ++i) {
     const GyroColumns by_gyro = gyro_columns(window, motion, i, bread.layout.gyro);
     const Vector3d tau_c = motion.R_wc[i].transpose() * motion.tau[i];
-    SharedMatrix so = SharedMatrix::Zero(size, own);
+    OwnShared os = OwnShared::Zero(own, bread.layout.size());
     OwnMatrix oo = OwnMatrix::Zero(own, own);
     for (int k = 0; k < planes; ++k) {
       const auto& F = linearized.planes[k][i].JtJ;
       const PlaneColumns& M = bread.columns[k][i] = plane_columns(k, tau_c, by_gyro);
-      const std::vector<int> at = bread.places(k);
-      bread.information(at, at) += M.transpose() * F * M;
-      so(at, Eigen::all) += M.transpose() * F.rightCols(own);
+      add_plane(F, M, k, bread, os);
       oo += F.bottomRightCorner(own, own);
     }
     if (!bread.noise_weights.empty()) {
       bread.noise_weights[i] = prior_weight(linearized.sigma_px, gyro_noise_sigma_rad(window, i));
       oo.diagonal().head<3>().array() += bread.noise_weights[i];
     }
-    const OwnMatrix inverse = inverse_of_symmetric(oo);
-    bread.information -= so * inverse * so.transpose();
-    bread.frames[i] = {inverse, inverse * so.transpose()};
+    Eliminated& frame = bread.frames[i] = {own == 3 ? inverse_of<3>(oo) : inverse_of<6>(oo), {}};
+    frame.gain = frame.inverse.lazyProduct(os);
+    bread.information -= os.transpose().lazyProduct(frame.gain);
   }
   return bread;
 }

@@ -33,14 +33,16 @@ SplitInformation split(const Window& window,
 
 }  // namespace
 
-SharedInformation prior_information(const Window& window, RotationModel model, double sigma_px) {
-  const int gyro = gyro_unknowns(window, model);
-  const int size = 2 + gyro;
-  SharedInformation prior = SharedInformation::Zero(size, size);
-  if (gyro > 0)
-    prior.diagonal().segment<3>(2).setConstant(
+SharedInformation prior_information(const Window& window,
+                                    const UnknownsLayout& layout,
+                                    double sigma_px) {
+  SharedInformation prior = SharedInformation::Zero(layout.size(), layout.size());
+  const int gyro = layout.of_gyro();
+  if (layout.gyro > 0)
+    prior.diagonal().segment<3>(gyro).setConstant(
         prior_weight(sigma_px, window.gyro->prior_sigma_rad_s));
-  if (gyro > 3) prior(5, 5) = prior_weight(sigma_px, window.gyro->time_offset_sigma_s);
+  if (layout.gyro > 3)
+    prior(gyro + 3, gyro + 3) = prior_weight(sigma_px, window.gyro->time_offset_sigma_s);
   return prior;
 }
 

@@ -5,6 +5,7 @@
 #include "engine/geometry/plane.h"
 #include "engine/geometry/pose.h"
 #include "engine/methods/plane/plane_kernel.h"
+#include "engine/methods/plane/plane_motion.h"
 #include "engine/window/window.h"
 
 #include <optional>
@@ -18,8 +19,10 @@ namespace gpo {
 /// translations and free rotations marginalized, per square pixel of noise.
 using SharedInformation = Eigen::MatrixXd;
 
-/// Returns the information of the prior.
-SharedInformation prior_information(const Window& window, RotationModel model, double sigma_px);
+/// Returns the information of the priors of bias and time offset, if these are unknown.
+SharedInformation prior_information(const Window& window,
+                                    const UnknownsLayout& layout,
+                                    double sigma_px);
 /// Returns the information of one frame; `normals` with rotation.
 SharedInformation frame_information(const Window& window,
                                     int frame,

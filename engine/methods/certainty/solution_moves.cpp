@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/methods/certainty/solution_moves.h"
 
+#include "engine/methods/certainty/shared_information.h"
 #include "engine/methods/plane/plane_weights.h"
 
 #include <algorithm>
@@ -174,8 +175,15 @@ std::vector<SolutionMove> moves_by_lens(const Sandwich& sandwich, LensMoves move
 
 // The errors r of the points change by q = e + J x, where x is the displacement of the solution by
 // the moves, and the best multiple is -q^T W r / q^T W q. Its scores are summed over tracks.
-Multiple multiple_of(const Sandwich& sandwich, const std::vector<Eigen::Matrix2Xd>& moves_px) {
-  const auto& [solved, bread, inverse] = sandwich;
+std::optional<Multiple> multiple_of(const SolvedPlanes& solved,
+                                    RotationModel model,
+                                    const std::vector<Eigen::Matrix2Xd>& moves_px) {
+  const auto linearized = linearize(solved, model);
+  if (!linearized) return std::nullopt;
+  const Bread bread = bread_of(solved, *linearized, model);
+  const auto inverse = inverse_information(bread.information);
+  if (!inverse) return std::nullopt;
+  const Sandwich sandwich{solved, bread, *inverse};
   const SolutionMove move = moves_by_lens(sandwich, {&moves_px, 1})[0];
   std::vector<double> gradients(moves_px.front().cols()), curvatures(moves_px.front().cols());
   for (int i = 1; i < solved.frame_count(); ++i) {
@@ -196,12 +204,14 @@ Multiple multiple_of(const Sandwich& sandwich, const std::vector<Eigen::Matrix2X
     }
   }
   const double curvature = std::accumulate(curvatures.begin(), curvatures.end(), 0.0);
-  if (!(curvature > 0)) return {};
+  if (!(curvature > 0)) return std::nullopt;
   const double value = -std::accumulate(gradients.begin(), gradients.end(), 0.0) / curvature;
   double squares = 0;
   for (std::size_t j = 0; j < gradients.size(); ++j)
     squares += std::pow(gradients[j] + value * curvatures[j], 2);
-  return {value, std::sqrt(squares) / curvature};
+  const double sigma_px = linearized->sigma_px;
+  return Multiple{
+      value, std::sqrt(squares) / curvature, value * value * curvature / (sigma_px * sigma_px)};
 }
 
 Eigen::MatrixXd joint_covariance(const Sandwich& sandwich,

@@ -5,7 +5,7 @@
 // Displacements of a solution by errors of the gyroscope, the lens and the readout.
 #include "engine/methods/certainty/sandwich.h"
 
-#include <cstddef>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -22,14 +22,18 @@ using LensMoves = std::span<const std::vector<Eigen::Matrix2Xd>>;
 /// Returns the displacements by one standard deviation of each lens parameter.
 std::vector<SolutionMove> moves_by_lens(const Sandwich& sandwich, LensMoves moves_px);
 
-/// Returns by which multiple of `moves_px` the points of a solution have to move so that its errors
-/// are least, with the standard deviation of that multiple by single tracks (engine/method.md, eq.
-/// 14l).
+/// By which multiple of given moves the points of a solution have to move so that its errors are
+/// least (engine/method.md, eq. 14l).
 struct Multiple {
   double value = 0;
-  double sigma = 0;
+  double sigma = 0;       ///< standard deviation of `value`, by single tracks
+  double chi_square = 0;  ///< decrease of the squared errors by `value`, per variance of the noise
 };
-Multiple multiple_of(const Sandwich& sandwich, const std::vector<Eigen::Matrix2Xd>& moves_px);
+/// Returns the multiple of `moves_px`, linearized around the solution; nullopt if that is not
+/// determined.
+std::optional<Multiple> multiple_of(const SolvedPlanes& solved,
+                                    RotationModel model,
+                                    const std::vector<Eigen::Matrix2Xd>& moves_px);
 
 /// Adds the spread of the gyroscope noise, a random walk, if it is an unknown (engine/method.md,
 /// eq. 14f).

@@ -235,15 +235,11 @@ std::optional<NeglectedRowDelay> neglected_row_delay(const SolvedPlanes& solved,
   const RowDelayPrior of_moves{0, size_s};
   auto moves_px = without_rolling_shutter(window, motion, model, of_moves).row_delay_moves_px;
   if (unknown) {
-    const auto linearized = linearize(solved, model);
-    if (!linearized) return std::nullopt;
-    const Bread bread = bread_of(solved, *linearized, model);
-    const auto inverse = inverse_information(bread.information);
-    if (!inverse) return std::nullopt;
-    const Multiple by_tracks = multiple_of({solved, bread, *inverse}, moves_px);
-    if (!(std::abs(by_tracks.value) > kSignificantSigmas * by_tracks.sigma)) return std::nullopt;
-    delay.mean_s = by_tracks.value * size_s;
-    const double moment = std::hypot(by_tracks.value, by_tracks.sigma);
+    const auto by_tracks = multiple_of(solved, model, moves_px);
+    if (!by_tracks || !(std::abs(by_tracks->value) > kSignificantSigmas * by_tracks->sigma))
+      return std::nullopt;
+    delay.mean_s = by_tracks->value * size_s;
+    const double moment = std::hypot(by_tracks->value, by_tracks->sigma);
     for (Eigen::Matrix2Xd& move : moves_px) move *= moment;
   }
   return NeglectedRowDelay{delay.mean_s, std::move(moves_px)};

@@ -131,9 +131,14 @@ class PlaneProblem {
       Eigen::Matrix<double, S::kOwn, S::kOwn> oo = f.oo;
       oo.diagonal() *= 1 + damping;
       const Eigen::LLT<Eigen::Matrix<double, S::kOwn, S::kOwn>> factor(oo);
-      frames[i] = {factor.solve(f.so.transpose()), factor.solve(f.o)};
-      reduced -= f.so * frames[i].gain;
-      right -= f.so * frames[i].rest;
+      auto& [gain, rest] = frames[i];
+      gain.resize(S::kOwn, at.s.size());
+      // Column by column, which Eigen unrolls, and without its products for large matrices.
+      for (int c = 0; c < gain.cols(); ++c)
+        gain.col(c) = factor.solve(OwnVector(f.so.row(c).transpose()));
+      rest = factor.solve(f.o);
+      reduced -= f.so.lazyProduct(gain);
+      right -= f.so.lazyProduct(rest);
     }
     Step step;
     step.shared = reduced.llt().solve(-right);
@@ -197,9 +202,10 @@ class PlaneProblem {
                  const PlaneColumns& M,
                  typename Linearized<S>::Frame& frame,
                  Linearized<S>& all) const {
-    const Eigen::Matrix<double, 8, Eigen::Dynamic, 0, 8, 7> FM = f.JtJ * M;
-    const Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 7, 7> MFM = M.transpose() * FM;
-    const Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 7, 1> Mr = M.transpose() * f.Jtr;
+    const Eigen::Matrix<double, 8, Eigen::Dynamic, 0, 8, 7> FM = f.JtJ.lazyProduct(M);
+    const Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 7, 7> MFM =
+        M.transpose().lazyProduct(FM);
+    const Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 7, 1> Mr = M.transpose().lazyProduct(f.Jtr);
     const int p = UnknownsLayout::of_plane(plane);
     const int n = UnknownsLayout::size_of_plane(plane);
     const int g = layout_.of_gyro();

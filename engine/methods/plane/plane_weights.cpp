@@ -128,8 +128,19 @@ void add_curved(const FrameObservations& f, const FrameState& state, int k, Fram
   sum.in_front = sum.in_front && transfer.in_front();
 }
 
+// The sum over all observations of their weights' normal equations, less the curvature along the
+// errors beyond the knee.
 FrameNormals curved_normals(const FrameObservations& f, const FrameState& state) {
-  return has_huber_weights(f) ? sum_of_curved(f, state) : weighted_normals(f, state, Rotating::yes);
+  FrameNormals normals = weighted_normals(f, state, Rotating::yes);
+  for (int k = 0; f.weight.empty() && k < f.count; ++k) {
+    if (f.mask[k] == 1) continue;
+    const Transfer transfer = transfer_of(f, state, k);
+    const Vector2d along = (transfer.pixel - Vector2d(f.u[k], f.v[k])).normalized();
+    const Eigen::Matrix<double, 8, 1> g =
+        f.mask[k] * transfer.jacobian(state.tangents).transpose() * along;
+    normals.JtJ.noalias() -= g * g.transpose();
+  }
+  return normals;
 }
 
 }  // namespace gpo
