@@ -26,6 +26,7 @@ export LIBGL_ALWAYS_SOFTWARE=1 GALLIUM_DRIVER=llvmpipe
 # The quarantine must stay below the memory limit of the monkey test. intercept_tls_get_addr=0 avoids invalid reads
 # of the leak sanitizer of clang 14, which guesses the location of thread-local memory.
 export ASAN_OPTIONS=detect_leaks=1:quarantine_size_mb=64:intercept_tls_get_addr=0
+export LSAN_OPTIONS=print_suppressions=0:suppressions=$unreported/lsan.supp
 export UBSAN_OPTIONS=halt_on_error=1:print_stacktrace=1
 export TSAN_OPTIONS=halt_on_error=1:suppressions=$unreported/tsan.supp
 

@@ -59,7 +59,7 @@ TEST(TimesInNames, CountFromZeroIfTheirStepsAreRounded) {
         {"", Files{"10.png", "35.png", "41.png", "90.png", "97.png"}}}) {
     Files files = names;
     const auto found = times_in_names(files);
-    EXPECT_EQ(found ? found->unit : "", unit) << names[1];
+    EXPECT_STREQ(found ? found->unit : "", unit) << names[1];
   }
 }
 
