@@ -154,8 +154,8 @@ TEST(GyroSensitivity, IsFiniteBeyondTheSamples) {
   for (const std::int64_t before_ns : {0, 5'000'000, 10'000'000, 20'000'000}) {
     const std::int64_t first_ns = gyroscope.timestamps_ns.front() - before_ns;
     const std::vector times{first_ns, first_ns + 500'000'000};
-    for (const Vector3d& d2 : sensitive_gyro_rotations(gyroscope, times).gyro->d2_offset)
-      EXPECT_TRUE(d2.allFinite()) << before_ns;
+    const Rotations rotations = sensitive_gyro_rotations(gyroscope, times);
+    for (const Vector3d& d2 : rotations.gyro->d2_offset) EXPECT_TRUE(d2.allFinite()) << before_ns;
   }
 }
 
