@@ -159,7 +159,6 @@ FrameCurvature frame_curvature(const SolvedPlanes& solved,
   const auto tangents = normal_tangents(m.normalized());
   const FrameObservations& f = solved.observations.plane(plane)[frame];
   const FrameState state = frame_state(solved.observations, solved.motion, frame, plane);
-  const auto J = weighted_jacobian(f, state, Weighting::gradient);
   FrameCurvature sums;
   for (int k = 0; k < f.count; ++k) {
     const Transfer transfer = transfer_of(f, state, k);
@@ -168,7 +167,7 @@ FrameCurvature frame_curvature(const SolvedPlanes& solved,
     const Vector2d by_height = transfer.d_normal() * m * m.norm();
     const Vector2d error = transfer.pixel - Vector2d(f.u[k], f.v[k]);
     const Vector2d weighted = weight_of(f, k) * by_height;
-    sums.cross += J.middleCols<2>(2 * k) * by_height * q.transpose();
+    sums.cross += transfer.jacobian(state.tangents).transpose() * weighted * q.transpose();
     sums.information += by_height.dot(weighted) * q * q.transpose();
     sums.gradient += error.dot(weighted) * q;
   }

@@ -127,29 +127,29 @@ struct Moved {
   SharedMatrix expected;
 };
 
-/// The blocks' linearizations and their sum.
+/// The blocks' linearizations, and their sum with its bread.
 struct Jackknife {
-  const SolvedPlanes& solved;
-  RotationModel model;
   std::vector<Linearization> blocks;
   Linearization whole;
+  Bread bread = {};
 };
 
 /// Leaves out each of `parts` regions in turn; `of_all` is the covariance without noise scale.
 /// nullopt if the rest does not determine the unknowns.
 std::optional<Moved> leave_out(const Jackknife& jackknife, const SharedMatrix& of_all, int parts) {
-  const auto& [solved, model, blocks, whole] = jackknife;
+  const auto& [blocks, whole, of_whole] = jackknife;
   const double scale = (parts - 1.0) / parts;
   const double sigma2 = whole.sigma_px * whole.sigma_px;
   const SharedMatrix none = SharedMatrix::Zero(of_all.rows(), of_all.cols());
   Moved moved{none, none};
   const int step = kBlocks / parts;
+  Bread bread = of_whole;
   for (int b = 0; b < kBlocks; b += step) {
     Linearization left = whole;
     Linearization out = blocks[b];
     for (int k = 1; k < step; ++k) add(blocks[b + k], 1, out);
     add(out, -1, left);
-    const Bread bread = bread_of(solved, left, model);
+    eliminate(left, bread);
     const auto inverse = inverse_information(bread.information);
     if (!inverse) return std::nullopt;
     // The sum over all blocks has no step: the step of the others is minus that of the block.
@@ -170,10 +170,10 @@ std::vector<std::optional<Eigen::Matrix2d>> neighbors_spread(const SolvedPlanes&
   std::vector<std::optional<Eigen::Matrix2d>> spreads(planes);
   const auto block_of_track = blocks_of(solved.observations, solved.window.track_count());
   if (block_of_track.empty() || !(sigma_px > 0)) return spreads;
-  const auto blocks = linearize_blocks(solved, block_of_track, sigma_px);
-  Jackknife jackknife{solved, model, blocks, blocks[0]};
-  for (int b = 1; b < kBlocks; ++b) add(blocks[b], 1, jackknife.whole);
-  const Bread bread = bread_of(solved, jackknife.whole, model);
+  Jackknife jackknife{linearize_blocks(solved, block_of_track, sigma_px), {}};
+  jackknife.whole = jackknife.blocks[0];
+  for (int b = 1; b < kBlocks; ++b) add(jackknife.blocks[b], 1, jackknife.whole);
+  const Bread& bread = jackknife.bread = bread_of(solved, jackknife.whole, model);
   const auto independent = inverse_information(bread.information);
   if (!independent || !is_solution(jackknife.whole, solved.motion, bread, *independent, noise))
     return spreads;

@@ -107,16 +107,25 @@ Eigen::MatrixXd square_of(const Eigen::MatrixXd& moves) {
   return all;
 }
 
-Eigen::Matrix<double, 8, Eigen::Dynamic> weighted_jacobian(const FrameObservations& f,
-                                                           const FrameState& state,
-                                                           Weighting weighting) {
+Eigen::Matrix<double, 8, Eigen::Dynamic> gradients_of(const FrameObservations& f,
+                                                      const FrameState& state) {
+  Eigen::Matrix<double, 8, Eigen::Dynamic> all(8, f.count);
+  for (int k = 0; k < f.count; ++k) {
+    const Transfer transfer = transfer_of(f, state, k);
+    const Eigen::Vector2d r = transfer.pixel - Eigen::Vector2d(f.u[k], f.v[k]);
+    all.col(k).noalias() = transfer.jacobian(state.tangents).transpose() * (weight_of(f, k) * r);
+  }
+  return all;
+}
+
+Eigen::Matrix<double, 8, Eigen::Dynamic> curved_jacobian(const FrameObservations& f,
+                                                         const FrameState& state) {
   Eigen::Matrix<double, 8, Eigen::Dynamic> all(8, 2 * f.count);
   for (int k = 0; k < f.count; ++k) {
     const Transfer transfer = transfer_of(f, state, k);
     const Eigen::Vector2d r = transfer.pixel - Eigen::Vector2d(f.u[k], f.v[k]);
     all.middleCols<2>(2 * k).noalias() =
-        transfer.jacobian(state.tangents).transpose() *
-        (weighting == Weighting::gradient ? weight_of(f, k) : curvature_of(f, k, r));
+        transfer.jacobian(state.tangents).transpose() * curvature_of(f, k, r);
   }
   return all;
 }
@@ -162,33 +171,41 @@ Bread bread_of(const SolvedPlanes& solved, const Linearization& linearized, Rota
   const auto& [window, observations, motion] = solved;
   const int planes = static_cast<int>(linearized.planes.size());
   const int frames = solved.frame_count();
-  const int own = own_size(model, motion);
-  Bread bread{.layout = {planes - 1, gyro_unknowns(window, model)}};
+  Bread bread{.layout = {planes - 1, gyro_unknowns(window, model)}, .own = own_size(model, motion)};
   bread.columns.assign(planes, std::vector<PlaneColumns>(frames));
-  bread.frames.resize(frames);
   bread.prior = prior_information(window, bread.layout, linearized.sigma_px);
-  bread.information = bread.prior;
-  if (model == RotationModel::bias && own == 6) bread.noise_weights.resize(frames);
+  const bool noisy = model == RotationModel::bias && bread.own == 6;
+  if (noisy) bread.noise_weights.resize(frames);
   for (int i = 1; i < frames; ++i) {
     const GyroColumns by_gyro = gyro_columns(window, motion, i, bread.layout.gyro);
     const Vector3d tau_c = motion.R_wc[i].transpose() * motion.tau[i];
+    for (int k = 0; k < planes; ++k) bread.columns[k][i] = plane_columns(k, tau_c, by_gyro);
+    if (noisy)
+      bread.noise_weights[i] = prior_weight(linearized.sigma_px, gyro_noise_sigma_rad(window, i));
+  }
+  eliminate(linearized, bread);
+  return bread;
+}
+
+void eliminate(const Linearization& linearized, Bread& bread) {
+  const int own = bread.own;
+  const auto frames = bread.columns[0].size();
+  bread.information = bread.prior;
+  bread.frames.resize(frames);
+  for (std::size_t i = 1; i < frames; ++i) {
     OwnShared os = OwnShared::Zero(own, bread.layout.size());
     OwnMatrix oo = OwnMatrix::Zero(own, own);
-    for (int k = 0; k < planes; ++k) {
+    for (int k = 0; k < std::ssize(bread.columns); ++k) {
       const auto& F = linearized.planes[k][i].JtJ;
-      const PlaneColumns& M = bread.columns[k][i] = plane_columns(k, tau_c, by_gyro);
-      add_plane(F, M, k, bread, os);
+      add_plane(F, bread.columns[k][i], k, bread, os);
       oo += F.bottomRightCorner(own, own);
     }
-    if (!bread.noise_weights.empty()) {
-      bread.noise_weights[i] = prior_weight(linearized.sigma_px, gyro_noise_sigma_rad(window, i));
-      oo.diagonal().head<3>().array() += bread.noise_weights[i];
-    }
-    Eliminated& frame = bread.frames[i] = {own == 3 ? inverse_of<3>(oo) : inverse_of<6>(oo), {}};
-    frame.gain = frame.inverse.lazyProduct(os);
-    bread.information -= os.transpose().lazyProduct(frame.gain);
+    if (!bread.noise_weights.empty()) oo.diagonal().head<3>().array() += bread.noise_weights[i];
+    auto& [inverse, gain] = bread.frames[i];
+    inverse = own == 3 ? inverse_of<3>(oo) : inverse_of<6>(oo);
+    gain = inverse.lazyProduct(os);
+    bread.information -= os.transpose().lazyProduct(gain);
   }
-  return bread;
 }
 
 Eigen::VectorXd newton_step(const Sandwich& sandwich, const Linearization& linearized) {
@@ -228,10 +245,7 @@ Influences influences_of(const Sandwich& sandwich) {
     for (int k = 0; k < std::ssize(bread.columns); ++k) {
       const FrameObservations& f = solved.observations.plane(k)[i];
       const FrameState state = frame_state(solved.observations, solved.motion, i, k);
-      const auto J = weighted_jacobian(f, state, Weighting::gradient);
-      Eigen::Matrix<double, 8, Eigen::Dynamic> g(8, f.count);
-      for (int o = 0; o < f.count; ++o)
-        g.col(o).noalias() = J.middleCols<2>(2 * o) * transfer_error_px(f, state, o);
+      const auto g = gradients_of(f, state);
       Eigen::MatrixXd reduced = frame.gain.transpose() * g.bottomRows(own);
       reduced(bread.places(k), Eigen::all) -= bread.columns[k][i].transpose() * g;
       const Index at = std::ssize(all.track);

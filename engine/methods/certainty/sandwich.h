@@ -24,12 +24,13 @@ using OwnVector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 6, 1>;
 /// Returns the number of a frame's own unknowns.
 int own_size(RotationModel model, const PlaneMotion& motion);
 
-/// Which weights of Huber's loss multiply an error: those of its gradient, or its curvature.
-enum class Weighting { gradient, curvature };
-/// Returns the weighted J^T of a frame over (u, phi, t), two columns for each observation.
-Eigen::Matrix<double, 8, Eigen::Dynamic> weighted_jacobian(const FrameObservations& observations,
-                                                           const FrameState& state,
-                                                           Weighting weighting);
+/// Returns J^T, over (u, phi, t), times the second derivative of the loss, two columns for each
+/// observation of a frame.
+Eigen::Matrix<double, 8, Eigen::Dynamic> curved_jacobian(const FrameObservations& observations,
+                                                         const FrameState& state);
+/// Returns the gradients over (u, phi, t) of half the loss, one column for each observation.
+Eigen::Matrix<double, 8, Eigen::Dynamic> gradients_of(const FrameObservations& observations,
+                                                      const FrameState& state);
 
 struct Linearization {
   std::vector<std::vector<FrameNormals>> planes;  ///< main plane first; one per frame
@@ -48,6 +49,7 @@ struct Eliminated {
 /// The "bread": the linearized problem with the frames' own unknowns eliminated.
 struct Bread {
   UnknownsLayout layout = {};
+  int own = 3;                                          ///< number of a frame's own unknowns
   std::vector<std::vector<PlaneColumns>> columns = {};  ///< for each plane and frame
   std::vector<Eliminated> frames = {};                  ///< the first one is empty
   SharedMatrix prior = {};                              ///< prior of the bias [px^2]
@@ -60,6 +62,9 @@ struct Bread {
 };
 
 Bread bread_of(const SolvedPlanes& solved, const Linearization& linearized, RotationModel model);
+/// Eliminates the frames' own unknowns for a linearization by other observations, or with other
+/// weights, at the same solution.
+void eliminate(const Linearization& linearized, Bread& bread);
 
 /// A solution with its bread and the inverse of the information about the shared unknowns, which is
 /// zero in the rows and columns of held unknowns.

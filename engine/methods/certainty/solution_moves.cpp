@@ -156,8 +156,7 @@ std::vector<SolutionMove> moves_by_lens(const Sandwich& sandwich, LensMoves move
     for (int k = 0; k < std::ssize(bread.columns); ++k) {
       const FrameObservations& f = solved.observations.plane(k)[i];
       const FrameState state = frame_state(solved.observations, solved.motion, i, k);
-      const Eigen::MatrixXd g =
-          weighted_jacobian(f, state, Weighting::curvature) * lens_errors_px(moves_px, f, state, i);
+      const Eigen::MatrixXd g = curved_jacobian(f, state) * lens_errors_px(moves_px, f, state, i);
       reduced(bread.places(k), Eigen::all) += bread.columns[k][i].transpose() * g;
       of_frame[i] += g.bottomRows(own);
     }

@@ -278,6 +278,7 @@ void draw_ruler(const BarArea& area, std::span<const std::int64_t> timestamps_ns
   double end = area.axis.left;
   for (const RulerTick& tick : ruler_ticks(area.axis, timestamps_ns, kApart * s)) {
     const float x = std::round(area.axis.slot_middle(tick.frame));
+    if (x < end - kGap * s) continue;  // behind a text: times may have long gaps
     area.list.AddRectFilled({x, area.top},
                             {x + std::max(1.0F, std::round(s)), area.bottom},
                             imgui_color(Role::text_dim));
