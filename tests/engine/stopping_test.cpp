@@ -29,7 +29,7 @@ namespace fs = std::filesystem;
 
 struct Outcome {
   int checks = 0;  ///< calls of `check_stop`
-  int late = 0;    ///< those after the request
+  int late = 0;    ///< after the request
   bool stopped = false;
 };
 
