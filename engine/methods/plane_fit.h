@@ -31,6 +31,7 @@ struct Fit {
   PlaneObservations observations = {};  ///< from `window`, with the weights of the last round
 };
 
+/// A window and how its planes are fitted.
 struct FitTask {
   const Window& window;
   const MethodOptions& options;

@@ -90,6 +90,18 @@ void add_plane(const Eigen::Matrix<double, 8, 8>& F,
   os.middleCols(g, b) += FM.rightCols(b).bottomRows(os.rows());
 }
 
+/// Returns the gradients over (u, phi, t) of half the loss, one column for each observation.
+Eigen::Matrix<double, 8, Eigen::Dynamic> gradients_of(const FrameObservations& f,
+                                                      const FrameState& state) {
+  Eigen::Matrix<double, 8, Eigen::Dynamic> all(8, f.count);
+  for (int k = 0; k < f.count; ++k) {
+    const Transfer transfer = transfer_of(f, state, k);
+    const Eigen::Vector2d r = transfer.pixel - Eigen::Vector2d(f.u[k], f.v[k]);
+    all.col(k).noalias() = transfer.jacobian(state.tangents).transpose() * (weight_of(f, k) * r);
+  }
+  return all;
+}
+
 }  // namespace
 
 Eigen::MatrixXd power_of_positive(const Eigen::MatrixXd& A, double power) {
@@ -104,17 +116,6 @@ Eigen::MatrixXd square_of(const Eigen::MatrixXd& moves) {
   Eigen::MatrixXd all = Eigen::MatrixXd::Zero(moves.rows(), moves.rows());
   if (moves.cols() > 0) all.selfadjointView<Eigen::Lower>().rankUpdate(moves);
   all.triangularView<Eigen::StrictlyUpper>() = all.transpose();
-  return all;
-}
-
-Eigen::Matrix<double, 8, Eigen::Dynamic> gradients_of(const FrameObservations& f,
-                                                      const FrameState& state) {
-  Eigen::Matrix<double, 8, Eigen::Dynamic> all(8, f.count);
-  for (int k = 0; k < f.count; ++k) {
-    const Transfer transfer = transfer_of(f, state, k);
-    const Eigen::Vector2d r = transfer.pixel - Eigen::Vector2d(f.u[k], f.v[k]);
-    all.col(k).noalias() = transfer.jacobian(state.tangents).transpose() * (weight_of(f, k) * r);
-  }
   return all;
 }
 

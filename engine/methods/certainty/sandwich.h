@@ -28,10 +28,6 @@ int own_size(RotationModel model, const PlaneMotion& motion);
 /// observation of a frame.
 Eigen::Matrix<double, 8, Eigen::Dynamic> curved_jacobian(const FrameObservations& observations,
                                                          const FrameState& state);
-/// Returns the gradients over (u, phi, t) of half the loss, one column for each observation.
-Eigen::Matrix<double, 8, Eigen::Dynamic> gradients_of(const FrameObservations& observations,
-                                                      const FrameState& state);
-
 struct Linearization {
   std::vector<std::vector<FrameNormals>> planes;  ///< main plane first; one per frame
   double sigma_px = 0;                            ///< noise of a coordinate, from the residuals
