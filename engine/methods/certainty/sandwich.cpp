@@ -125,7 +125,7 @@ Eigen::Matrix<double, 8, Eigen::Dynamic> curved_jacobian(const FrameObservations
   for (int k = 0; k < f.count; ++k) {
     const Transfer transfer = transfer_of(f, state, k);
     const Eigen::Vector2d r = transfer.pixel - Eigen::Vector2d(f.u[k], f.v[k]);
-    all.middleCols<2>(2 * k).noalias() =
+    all.middleCols<2>(Index{2} * k).noalias() =
         transfer.jacobian(state.tangents).transpose() * curvature_of(f, k, r);
   }
   return all;

@@ -27,7 +27,7 @@ Eigen::MatrixXd lens_errors_px(LensMoves moves_px,
       const auto move_px = moves_px[p][0].col(f.track[o]);
       const Eigen::Vector3d moved =
           ray + Eigen::Vector3d(move_px.x() / state.fx, move_px.y() / state.fy, 0);
-      errors.col(p).segment<2>(2 * o) =
+      errors.col(p).segment<2>(Eigen::Index{2} * o) =
           transfer_on_plane(state, moved).pixel - pixel - moves_px[p][frame].col(f.track[o]);
     }
   }
@@ -196,7 +196,8 @@ std::optional<Multiple> multiple_of(const SolvedPlanes& solved,
       for (int o = 0; o < f.count; ++o) {
         const Transfer transfer = transfer_of(f, state, o);
         const Eigen::Vector2d r = transfer.pixel - Eigen::Vector2d(f.u[o], f.v[o]);
-        const Eigen::Vector2d q = e.segment<2>(2 * o) + transfer.jacobian(state.tangents) * local;
+        const Eigen::Vector2d q =
+            e.segment<2>(Eigen::Index{2} * o) + transfer.jacobian(state.tangents) * local;
         gradients[f.track[o]] += q.dot(weight_of(f, o) * r);
         curvatures[f.track[o]] += q.dot(curvature_of(f, o, r) * q);
       }
