@@ -157,7 +157,7 @@ std::optional<LiveAnswer> inspect(LiveTask task,
 std::string missing_for_ready(const Inspection& inspection) {
   if (is_ready(inspection)) return "";
   const Initialization& found = *inspection.initialization;
-  const std::string why = found.ok && found.verdict ? found.verdict->reason : found.reason;
+  std::string why = found.ok && found.verdict ? found.verdict->reason : found.reason;
   const auto baseline = baseline_of(inspection);
   if (!baseline) return why;
   const double sigma_deg = normal_sigma_deg(inspection).value_or(0);

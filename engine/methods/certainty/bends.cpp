@@ -188,12 +188,13 @@ std::vector<Curvature> curvatures_with_motion(const SolvedPlanes& solved,
     Eigen::MatrixXd own = Eigen::MatrixXd::Zero(6, size);
     for (int k = 0; k < std::ssize(surfaces); ++k) {
       if (!surfaces[k]) continue;
+      const Eigen::Index at = Eigen::Index{3} * k;
       const FrameCurvature frame = frame_curvature(solved, i, k, surfaces[k]->center);
-      cross(free.bread.places(k), Eigen::seqN(3 * k, 3)) +=
+      cross(free.bread.places(k), Eigen::seqN(at, 3)) +=
           free.bread.columns[k][i].transpose() * frame.cross;
-      information.block<3, 3>(3 * k, 3 * k) += frame.information;
-      gradient.segment<3>(3 * k) += frame.gradient;
-      own.middleCols<3>(3 * k) = frame.cross.bottomRows<6>();
+      information.block<3, 3>(at, at) += frame.information;
+      gradient.segment<3>(at) += frame.gradient;
+      own.middleCols<3>(at) = frame.cross.bottomRows<6>();
     }
     cross -= gain.transpose() * own;
     information -= own.transpose() * inverse * own;
@@ -201,13 +202,13 @@ std::vector<Curvature> curvatures_with_motion(const SolvedPlanes& solved,
   }
   information -= cross.transpose() * free.inverse * cross;
   gradient -= cross.transpose() * free.inverse * free.shared_gradient;
-  for (int k = 0; k < std::ssize(surfaces); ++k)
+  for (Eigen::Index k = 0; k < std::ssize(surfaces); ++k)
     if (!surfaces[k]) information.block<3, 3>(3 * k, 3 * k).setIdentity();
   const auto covariance = inverse_information(information);
   std::vector<Curvature> curvatures(surfaces.size(), {Vector3d::Zero(), Eigen::Matrix3d::Zero()});
   if (!covariance) return curvatures;
   const Eigen::VectorXd values = -(*covariance * gradient);
-  for (int k = 0; k < std::ssize(surfaces); ++k)
+  for (Eigen::Index k = 0; k < std::ssize(surfaces); ++k)
     curvatures[k] = {values.segment<3>(3 * k), covariance->block<3, 3>(3 * k, 3 * k).inverse()};
   return curvatures;
 }
@@ -299,7 +300,8 @@ void add_bends(const SolvedPlanes& solved, Uncertainty& u) {
   };
   const Eigen::Matrix3d of_main = bend_along(0, solved.motion.normal);
   if (of_main.trace() > 0) u.bend_sigma_deg = degrees(std::sqrt(of_main.trace()));
-  const Eigen::Index size = u.joint_covariance.rows() - 3 * (solved.frame_count() - 1);
+  const Eigen::Index size =
+      u.joint_covariance.rows() - Eigen::Index{3} * (solved.frame_count() - 1);
   const SharedMatrix Y = u.joint_covariance.bottomRightCorner(size, size);
   if (const auto information = inverse_information(Y))
     widen_by_systematic_errors(solved,

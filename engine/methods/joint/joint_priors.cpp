@@ -17,13 +17,13 @@ constexpr double kHeld = 1e-6;
 
 // The steps of the random walk, in the axes of the world, are independent.
 MatrixXd Model::walk_information(const PlaneMotion& start) const {
-  const Index size = 3 * (layout_.frames - 1);
+  const Index size = Index{3} * (layout_.frames - 1);
   MatrixXd information = MatrixXd::Zero(size, size);
   for (int i = 1; i < layout_.frames; ++i) {
     const double after = gyro_noise_sigma_rad(window_, i);
     const double before = gyro_noise_sigma_rad(window_, i - 1);
     const double weight = 1 / std::max(after * after - before * before, 1e-20);
-    const Index b = 3 * (i - 1), a = b - 3;
+    const Index b = Index{3} * (i - 1), a = b - 3;
     information.block<3, 3>(b, b).diagonal().array() += weight;
     if (i == 1) continue;
     const Matrix3d R = start.R_wc[i].transpose() * start.R_wc[i - 1];
@@ -70,7 +70,7 @@ Priors Model::priors(const State& state, const Scales& scales, Priors all) const
   }
   for (int i = 1; options_.gyro_noise && i < layout_.frames; ++i) {
     for (int k = std::max(1, i - 1); k < std::min(layout_.frames, i + 2); ++k) {
-      const Matrix3d weight = variance * walk_.block<3, 3>(3 * (i - 1), 3 * (k - 1));
+      const Matrix3d weight = variance * walk_.block<3, 3>(Index{3} * (i - 1), Index{3} * (k - 1));
       const Vector3d pull = weight * motion.gyro_noise_rad[k];
       all.information.block<3, 3>(layout_.at_frame(i), layout_.at_frame(k)) += weight;
       all.gradient.segment<3>(layout_.at_frame(i)) += pull;

@@ -51,7 +51,7 @@ std::vector<Pose> cameras_of(const PlaneMotion& motion) {
 
 Eigen::Vector3d gyro_correction_rad(const Window& window, int frame, const PlaneMotion& motion) {
   const GyroSensitivity& gyro = *window.gyro;
-  const Eigen::Vector3d by_bias = gyro.d_bias[frame] * (motion.bias_rad_s - gyro.bias_rad_s);
+  Eigen::Vector3d by_bias = gyro.d_bias[frame] * (motion.bias_rad_s - gyro.bias_rad_s);
   const double dt_s = motion.time_offset_s;
   if (dt_s == 0) return by_bias;
   return by_bias + dt_s * (gyro.d_offset[frame] + 0.5 * dt_s * gyro.d2_offset[frame]);
