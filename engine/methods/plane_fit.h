@@ -63,6 +63,7 @@ Fit with_estimated_shutter(const FitTask& task, const Fit& given);
 
 /// Adds the time and iterations of another solution.
 void add_effort(const SolverReport& tried, SolverReport& solver);
+/// Copies the weights of the same observations at other points.
 void copy_weights(const PlaneObservations& from, PlaneObservations& to);
 
 bool converged(const Fit& fit);

@@ -4,9 +4,12 @@
 
 #include "engine/geometry/homography.h"
 #include "engine/geometry/statistics.h"
+#include "engine/methods/certainty/solution_moves.h"
 #include "engine/methods/methods.h"
+#include "engine/methods/plane/rolling_shutter.h"
 #include "tests/engine/simulated_window.h"
 
+#include <algorithm>
 #include <array>
 #include <string>
 
@@ -200,6 +203,36 @@ INSTANTIATE_TEST_SUITE_P(Methods,
                          NeglectedShutter,
                          testing::Values("gpo", "pba", "ba"),
                          [](const auto& info) { return std::string(info.param); });
+
+/// `gpo_joint` searches a row delay only if this chi-square is above 5.7.
+TEST(RowDelayByTracks, HasTheChiSquareOfChanceWithAGlobalShutterAndALargeOneElse) {
+  double of_chance = 0, least_rolling = 1e9;
+  constexpr int kSeeds = 40;
+  for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {
+    for (const double delay_s : {0.0, 40e-6}) {
+      const Window window = simulate_fitted({.motion = Motion::orbit,
+                                             .frames = 20,
+                                             .points = 120,
+                                             .row_delay_s = delay_s,
+                                             .seed = seed})
+                                .window;
+      const Initialization result = resampled_by("gpo", window);
+      ASSERT_TRUE(result.ok) << seed;
+      const PlaneMotion motion = motion_of(result.plane, result.cameras);
+      const PlaneObservations observations = plane_observations(window);
+      const auto moved =
+          without_rolling_shutter(window, motion, window.rotations, unknown_row_delay(window));
+      const auto multiple =
+          multiple_of({window, observations, motion}, window.rotations, moved.row_delay_moves_px);
+      ASSERT_TRUE(multiple) << seed;
+      if (delay_s == 0) of_chance += multiple->chi_square / kSeeds;
+      if (delay_s > 0) least_rolling = std::min(least_rolling, multiple->chi_square);
+    }
+  }
+  EXPECT_GT(of_chance, 0.5);
+  EXPECT_LT(of_chance, 1.7);
+  EXPECT_GT(least_rolling, 5.7);
+}
 
 TEST(KnownShutter, WidensTheUncertaintyOfMethodsThatNeglectIt) {
   Simulation truth = noisy_window(1, std::nullopt, 0, 40e-6);
