@@ -61,14 +61,15 @@ Fit refit(const FitTask& task,
   return fit;
 }
 
-/// Returns the decrease of the cost, per noise variance, that additional unknowns reach by chance.
-double most_by_chance(int more_unknowns) {
+/// Returns the chi-square above which additional unknowns are significant.
+double significant_chi_square(int more_unknowns) {
   return more_unknowns + kSignificantSigmas * std::sqrt(2.0 * more_unknowns) +
          kSignificantSigmas * kSignificantSigmas;
 }
 
-/// Returns false if the row delay is insignificant by far, linearized around a fit without one.
-bool may_roll(const FitTask& task, const Fit& global) {
+/// Returns false if one linearized step from a fit without a row delay finds it clearly
+/// insignificant.
+bool may_have_row_delay(const FitTask& task, const Fit& global) {
   constexpr double kFar = 0.25;
   const PlaneMotion& motion = global.solution.motion;
   const RotationModel model = global.rotations.model;
@@ -76,7 +77,7 @@ bool may_roll(const FitTask& task, const Fit& global) {
       without_rolling_shutter(task.window, motion, model, unknown_row_delay(task.window));
   const auto delay =
       multiple_of({task.window, global.observations, motion}, model, moved.row_delay_moves_px);
-  return !delay || delay->chi_square > kFar * most_by_chance(1);
+  return !delay || delay->chi_square > kFar * significant_chi_square(1);
 }
 
 }  // namespace
@@ -107,7 +108,7 @@ double variance(const Fit& fit) {
 
 bool is_significant(const Fit& without, const Fit& with, int more_unknowns) {
   const double chi_square = 2 * (without.cost - with.cost) / variance(with);
-  return chi_square > most_by_chance(more_unknowns);
+  return chi_square > significant_chi_square(more_unknowns);
 }
 
 Fit fit_planes(const FitTask& task,
@@ -140,7 +141,7 @@ Fit fit_planes(const FitTask& task,
 
 Fit with_estimated_shutter(const FitTask& task, const Fit& given) {
   if (task.options.shutter == Shutter::global || task.latent()) return given;
-  if (!may_roll(task, given)) return given;
+  if (!may_have_row_delay(task, given)) return given;
   Fit global = given;
   global.cost = given.solution.solver.final_cost;  // comparable with `refit`
   Fit best = global;
