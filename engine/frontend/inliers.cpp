@@ -375,6 +375,10 @@ Window make_window(const Tracks& tracks,
     window.points_px.push_back(undistort_all(camera, tracks.raw_px[i]));
   }
   window.noise_ratio = noise_ratios(tracks);
+  window.readout_direction = readout_direction(camera);
+  const Eigen::Vector2d center_px(0.5 * (camera.width - 1), 0.5 * (camera.height - 1));
+  for (const Eigen::Matrix2Xd& raw_px : tracks.raw_px)
+    window.rows.emplace_back((raw_px.colwise() - center_px).transpose() * window.readout_direction);
   window.lens_moves_px = lens_moves(camera, window);
   RansacOptions ransac = options.ransac;
   if (!ransac.threshold_px) ransac.threshold_px = usual_threshold_px(camera, window.points_px);

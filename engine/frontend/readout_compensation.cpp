@@ -84,18 +84,15 @@ Eigen::Matrix3Xd velocities(const std::vector<Matrix2Xd>& points_px,
   return result;
 }
 
-double rows_after_center(const Window& window, const Vector2d& p) {
-  return window.readout_direction.dot(p - window.K.topRightCorner<2, 1>());
-}
-
-/// Displacement of a point for a unit of the row delay, and of each lens term.
+/// Displacement of an observation for a unit of the row delay, and of each lens term.
 Eigen::Matrix<double, 2, kUnknowns> displacements(const Window& window,
-                                                  const Vector2d& p,
+                                                  int frame,
+                                                  int track,
                                                   const Vector2d& velocity_px_s) {
   const Vector2d center_px = window.K.topRightCorner<2, 1>();
   Eigen::Matrix<double, 2, kUnknowns> result;
-  result.col(0) = kUnit_s * rows_after_center(window, p) * velocity_px_s;
-  const Vector2d q = (p - center_px) / center_px.norm();
+  result.col(0) = kUnit_s * window.row_of(frame, track) * velocity_px_s;
+  const Vector2d q = (window.points_px[frame].col(track) - center_px) / center_px.norm();
   const double x = q.x(), y = q.y();
   const double monomials[] = {x * x, x * y, y * y, x * x * x, x * x * y, x * y * y, y * y * y};
   for (int k = 0; k < kLensTerms; ++k) {
@@ -153,10 +150,10 @@ void add_block(const Window& window,
     block.region.push_back(region_of(from.col(k), center_px));
     block.residuals.segment<2>(2 * k) = to.col(k) - moved;
     block.by_unknowns.middleRows<2>(2 * k) =
-        displacements(window, to.col(k), px_s.col(j).head<2>()) -
-        J * displacements(window, from.col(k), first_px_s.col(j).head<2>());
-    const double own = rows_after_center(window, to.col(k)) * px_s(2, j);
-    const double first = rows_after_center(window, from.col(k)) * first_px_s(2, j);
+        displacements(window, frame, j, px_s.col(j).head<2>()) -
+        J * displacements(window, 0, j, first_px_s.col(j).head<2>());
+    const double own = window.row_of(frame, j) * px_s(2, j);
+    const double first = window.row_of(0, j) * first_px_s(2, j);
     block.noise.segment<2>(2 * k).setConstant(kUnit_s * kUnit_s *
                                               (own * own + 0.5 * J.squaredNorm() * first * first));
     const Vector2d a = (from.col(k) - center_px) / scale_px;
@@ -312,10 +309,9 @@ std::vector<Matrix2Xd> without_readout(const Window& window,
                                        double row_delay_s) {
   const std::vector<Matrix2Xd> seen_px = points_px;
   for (int i = 0; i < window.frame_count(); ++i) {
-    const Eigen::RowVectorXd seconds = row_delay_s * window.readout_direction.transpose() *
-                                       (seen_px[i].colwise() - window.K.topRightCorner<2, 1>());
-    points_px[i] -=
-        velocities(seen_px, window.timestamps_ns, i, kReach).topRows<2>() * seconds.asDiagonal();
+    const Eigen::Matrix3Xd px_s = velocities(seen_px, window.timestamps_ns, i, kReach);
+    for (int j = 0; j < window.track_count(); ++j)
+      points_px[i].col(j) -= row_delay_s * window.row_of(i, j) * px_s.col(j).head<2>();
   }
   return points_px;
 }
@@ -349,7 +345,7 @@ Window with_late_rows(const Window& window, const std::function<Window(double)>&
     Window late = with_points(select(row_delay_s), window.points_px);
     late.lens_moves_px = window.lens_moves_px;
     late.row_delay = window.row_delay;
-    late.readout_direction = window.readout_direction;
+    late.rows = window.rows;
     late.selection_row_delay_s = row_delay_s;
     return late;
   };

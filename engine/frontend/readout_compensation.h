@@ -16,7 +16,7 @@ namespace gpo {
 // are (engine/method.md, "Rolling shutter in the front end").
 
 /// Moves the window's points, or its tracks in the image as recorded, to where they were at the
-/// time stamps of their frames: p - s d^T (p - c) dp/dt, d the readout direction. One a frame, 2 x
+/// time stamps of their frames: p - s v dp/dt, v the row (`Window::rows`). One per frame, 2 x
 /// tracks, NaN: not seen.
 std::vector<Eigen::Matrix2Xd> without_readout(const Window& window,
                                               std::vector<Eigen::Matrix2Xd> points_px,

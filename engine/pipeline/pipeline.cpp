@@ -116,7 +116,6 @@ Window window_of(const Tracks& tracks,
                                 .leader = options.plane - 1,
                                 .on_first_plane = on_first_plane};
   Window window = make_window(tracks, camera, timestamps_ns, selection);
-  window.readout_direction = readout_direction(camera);
   if (camera.readout && readout_lines(camera) > 1) {
     const double rows = readout_lines(camera) - 1;
     window.row_delay = {camera.readout->seconds / rows, camera.readout->sigma_s / rows};

@@ -58,7 +58,7 @@ struct GyroSensitivity {
   std::vector<Eigen::Vector3d> d2_offset;  ///< the same [rad/s^2]
 };
 
-/// Prior of the time from one row of an undistorted image to the next [s]; from one column to the
+/// Prior of the time from one row of the recorded image to the next [s]; from one column to the
 /// next if columns are read (`Window::readout_direction`).
 struct RowDelayPrior {
   double mean_s = 0;
@@ -85,6 +85,10 @@ struct Window {
   /// Empty: equal. The joint model weights by it, and the selection of inliers widens gates; other
   /// methods weigh all alike.
   std::vector<Eigen::VectorXd> noise_ratio = {};
+  /// Row of each observation in the recorded image [px], counted along `readout_direction` from the
+  /// row of the time stamp, the image center; one vector per frame. Empty: those of `points_px`,
+  /// counted from the principal point.
+  std::vector<Eigen::VectorXd> rows = {};
   std::vector<std::vector<bool>> inlier;  ///< one per frame and track: observed, agrees with H_i1
   std::vector<Eigen::Matrix3d> H_i1;      ///< p_i ~ H_i1 p_1 by RANSAC [px]; H_11 = I
   Inliers inliers = Inliers::per_frame;   ///< how `inlier` was chosen
@@ -115,6 +119,11 @@ struct Window {
   /// Returns `noise_ratio` of an observation.
   double noise_ratio_of(int frame, int track) const {
     return noise_ratio.empty() ? 1 : noise_ratio[frame][track];
+  }
+  /// Returns `rows` of an observation.
+  double row_of(int frame, int track) const {
+    if (!rows.empty()) return rows[frame][track];
+    return readout_direction.dot(points_px[frame].col(track) - K.topRightCorner<2, 1>());
   }
   /// Returns the factor of the gate of an observation: the root mean square ratio of it and the one
   /// in the reference frame, at least 1, because homographies are fitted without weights.

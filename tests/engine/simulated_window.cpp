@@ -59,6 +59,7 @@ Vector3d position(const SimulationOptions& options, const Vector3d& normal, doub
 
 constexpr double kFramePeriod_s = 1.0 / 30;
 constexpr std::int64_t kFirst_ns = 1'000'000'000;
+constexpr double kMiddleRow = 239.5;
 
 Matrix3d rotation(const Vector3d& wobble_rad, double s) {
   return so3_exp(
@@ -134,7 +135,8 @@ Eigen::Vector2d seen_px(const SimulationOptions& options,
   Eigen::Vector2d pixel = (K * to_camera(simulation.cameras[frame], point)).hnormalized();
   const double duration_s = kFramePeriod_s * std::max(1, options.frames - 1);
   for (int round = 0; options.row_delay_s != 0 && round < 10; ++round) {
-    const double seconds = kFramePeriod_s * frame + options.row_delay_s * (pixel.y() - K(1, 2));
+    const double row = options.lens ? distort(*options.lens, pixel).y() : pixel.y();
+    const double seconds = kFramePeriod_s * frame + options.row_delay_s * (row - kMiddleRow);
     const Pose camera =
         camera_at(options, wobble_rad, simulation.plane.normal, seconds / duration_s);
     pixel = (K * to_camera(camera, point)).hnormalized();
@@ -150,7 +152,7 @@ Simulation simulate(const SimulationOptions& options) {
   std::uniform_real_distribution<double> uniform(0, 1);
   Simulation simulation;
   Window& window = simulation.window;
-  window.K << 500, 0, 319.5, 0, 500, 239.5, 0, 0, 1;
+  window.K << 500, 0, 319.5, 0, 500, kMiddleRow, 0, 0, 1;
   const Matrix3d K_inverse = window.K.inverse();
   const double azimuth = 2 * std::numbers::pi * uniform(random);
   const double tilt = radians(options.tilt_deg);

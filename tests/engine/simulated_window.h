@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "engine/geometry/camera.h"
 #include "engine/geometry/plane.h"
 #include "engine/geometry/pose.h"
 #include "engine/methods/plane/plane_motion.h"
@@ -53,8 +54,10 @@ struct SimulationOptions {
   std::optional<double> gyro_bias_rad_s = std::nullopt;
   double gyro_offset_s = 0;       ///< gyroscope clock = camera clock + offset, also unknown
   double reference_noise_px = 0;  ///< on each coordinate, in the reference frame
-  double row_delay_s = 0;         ///< rolling shutter, around the principal point's row
-  double gyro_noise_rad_s = 0;    ///< per sample and axis, at 200 Hz; a phone's is about 0.002
+  double row_delay_s = 0;         ///< rolling shutter, around the middle row
+  /// Camera of the recorded image, whose rows are read; nullopt: no distortion.
+  std::optional<Camera> lens = std::nullopt;
+  double gyro_noise_rad_s = 0;  ///< per sample and axis, at 200 Hz; a phone's is about 0.002
   std::uint64_t seed = 1;
 };
 

@@ -139,6 +139,7 @@ Window without_tracks(const Window& window, const std::vector<bool>& removed) {
     less.points_px[i] = window.points_px[i](Eigen::all, kept);
     less.inlier[i] = picked(window.inlier[i], kept);
     if (!window.noise_ratio.empty()) less.noise_ratio[i] = window.noise_ratio[i](kept).eval();
+    if (!window.rows.empty()) less.rows[i] = window.rows[i](kept).eval();
   }
   refine_homographies(less);
   for (WindowPlane& plane : less.planes) {

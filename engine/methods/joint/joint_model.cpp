@@ -208,7 +208,7 @@ void Model::predict_group(const State& state,
     const int j = group.tracks[o];
     const Vector2d observed = observed_px(group, static_cast<int>(o));
     Prediction& p = all[o];
-    p.seconds = state.row_delay_s * window_.readout_direction.dot(observed);
+    p.seconds = state.row_delay_s * window_.row_of(group.frame, tracks_[j].column);
     if (state.row_delay_s != 0) moving.read_after(p.seconds, at);
     const Vector2d latent = (tracks_[j].reference_px + state.shift_px.col(j)).cwiseProduct(per_px);
     p.transfer = transfer_on_plane(at, Vector3d(latent.x(), latent.y(), 1));
@@ -265,7 +265,7 @@ Model::Rows Model::jacobian(const Prediction& p, const Track& track, const Share
     const Vector3d rate = velocity.rotation_rad_s + p.seconds * velocity.rotation_rad_s2;
     const Vector3d tau_s = shared.at_stamp.R_cw * (velocity.tau_s + p.seconds * velocity.tau_s2);
     const Vector3d y_s = at.y.cross(rate) - at.height * tau_s;
-    J.row(c++) = window_.readout_direction.dot(at.pixel) * (y_s.transpose() * d_y);
+    J.row(c++) = window_.row_of(shared.frame, track.column) * (y_s.transpose() * d_y);
   }
   for (int k = 0; k < layout_.lens_parameters; ++k)
     J.row(c++) = -lens_moves_px_[k][shared.frame].col(track.column).transpose();

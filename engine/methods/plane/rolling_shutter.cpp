@@ -65,7 +65,6 @@ std::vector<Eigen::Matrix2Xd> corrected_px(const Window& window,
                                            std::span<const Velocity> velocities,
                                            double row_delay_s) {
   const Eigen::Matrix3d K_inverse = window.K.inverse();
-  const Vector2d center_px = window.K.topRightCorner<2, 1>();
   const auto planes = planes_of_tracks(window, motion);
   std::vector<Eigen::Matrix2Xd> points_px = window.points_px;
   for (int i = 0; i < window.frame_count(); ++i) {
@@ -73,7 +72,7 @@ std::vector<Eigen::Matrix2Xd> corrected_px(const Window& window,
     for (int j = 0; j < window.track_count(); ++j) {
       if (!planes[j] || !points_px[i].col(j).allFinite()) continue;
       const Vector2d seen_px = points_px[i].col(j);
-      const double seconds = row_delay_s * window.readout_direction.dot(seen_px - center_px);
+      const double seconds = row_delay_s * window.row_of(i, j);
       const Pose at_row = pose_after(motion, i, velocities[i], seconds);
       const auto point = intersect(*planes[j], at_row, K_inverse * seen_px.homogeneous());
       if (point) points_px[i].col(j) = (window.K * to_camera(at_stamp, *point)).hnormalized();

@@ -18,9 +18,8 @@ inline constexpr double kReadoutSigma_s = 0.02;
 RowDelayPrior unknown_row_delay(const Window& window);
 
 /// Corrects the inliers of a window for rolling shutter (engine/method.md, eq. 11): moves them to
-/// where they would be if every row had been read at its frame's time stamp, which is that of the
-/// principal point's row. `velocities`: one per frame. Sets `row_delay_moves_px` if the delay has a
-/// standard deviation.
+/// where they would be if every row had been read at its frame's time stamp (`Window::rows`).
+/// `velocities`: one per frame. Sets `row_delay_moves_px` if the delay has a standard deviation.
 Window without_rolling_shutter(const Window& window,
                                const PlaneMotion& motion,
                                std::span<const Velocity> velocities,

@@ -132,6 +132,28 @@ TEST(Initialize, TakesTheRowDelayFromTheReadoutTimeOfTheCamera) {
   EXPECT_EQ(by_columns.readout_direction, -Eigen::Vector2d::UnitX());
 }
 
+/// Rows of the undistorted image are farther apart, up to 1.3 times at its edge.
+TEST(Initialize, CountsRowsInTheRecordedImage) {
+  constexpr double kRowDelay_s = 4e-5;
+  double sum_us = 0;
+  for (int k = 0; k < 6; ++k) {
+    SimulationOptions options = noisy(kMotions[k], 40 + k, 0.1);
+    options.row_delay_s = kRowDelay_s;
+    Camera camera = camera_of(simulate({.frames = 1}).window);
+    camera.distortion = Distortion::radial_tangential;
+    camera.coefficients = {-0.28, 0.07, 0, 0};
+    camera.sigmas.assign(8, 0);
+    options.lens = camera;
+    std::vector<Frame> frames = frames_of(simulate(options).window);
+    for (Frame& frame : frames)
+      for (auto p : frame.raw_px.colwise()) p = distort(camera, p);
+    const Initialization result = initialize(camera, frames).initialization;
+    ASSERT_TRUE(result.ok && result.row_delay_s) << k << result.reason;
+    sum_us += 1e6 * (*result.row_delay_s - kRowDelay_s);
+  }
+  EXPECT_NEAR(sum_us / 6, 0, 0.8);  // -4 if rows were those of the undistorted image
+}
+
 /// Input of `initialize`: four frames of a simulated camera.
 struct FourFrames {
   Simulation simulation = simulate({.frames = 4});
