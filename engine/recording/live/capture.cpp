@@ -108,7 +108,7 @@ void Capture::run(const std::stop_token& stop) {
     if (stop.stop_requested()) return;
     const bool none = status().captured == 0;
     const bool waited = seconds_since(connected_ns_) > options_.reconnect_s;
-    if (!row.reconnects || gives_up() || (failed && none && !waited))
+    if (!row.reconnects() || gives_up() || (failed && none && !waited))
       return set_state(failed || none ? CaptureState::failed : CaptureState::ended, reason);
     set_state(CaptureState::connecting, reason + "; connecting again");
     options_.clock.wait_until(options_.clock.now_ns() + kRetry_ns, stop);

@@ -41,40 +41,15 @@ LiveClock real_clock() {
           }};
 }
 
-std::span<const SourceRow> source_rows() {
-  static constexpr auto kRows = std::to_array<SourceRow>({{.prefix = "camera:",
-                                                           .title = "camera",
-                                                           .example = "camera:0",
-                                                           .is_live = true,
-                                                           .open = open_camera},
-                                                          {.prefix = "rtsp://",
-                                                           .title = "RTSP stream",
-                                                           .example = "rtsp://HOST:8554/NAME",
-                                                           .is_live = true,
-                                                           .reconnects = true,
-                                                           .open = open_stream},
-                                                          {.prefix = "http://",
-                                                           .title = "HTTP stream (MJPEG, MPEG-TS)",
-                                                           .example = "http://HOST:8080/video",
-                                                           .is_live = true,
-                                                           .reconnects = true,
-                                                           .open = open_stream},
-                                                          {.prefix = "udp://",
-                                                           .title = "UDP stream (MPEG-TS)",
-                                                           .example = "udp://0.0.0.0:5000",
-                                                           .is_live = true,
-                                                           .reconnects = true,
-                                                           .open = open_stream},
-                                                          {.prefix = "",
-                                                           .title = "recording in real time",
-                                                           .example = "VIDEO.mp4",
-                                                           .open = open_player}});
-  return kRows;
-}
-
 const SourceRow& source_row(const std::string& address) {
+  static constexpr auto kRows = std::to_array<SourceRow>(
+      {{"camera:", true, open_camera},
+       {"rtsp://", true, open_stream, "rtsp", "rtp,udp,tcp"},
+       {"http://", true, open_stream, "mpegts,mpjpeg,mjpeg,jpeg_pipe,flv,matroska", "http,tcp"},
+       {"udp://", true, open_stream, "mpegts", "udp"},
+       {"", false, open_player}});
   return *std::ranges::find_if(
-      source_rows(), [&](const SourceRow& row) { return address.starts_with(row.prefix); });
+      kRows, [&](const SourceRow& row) { return address.starts_with(row.prefix); });
 }
 
 OpenSource open_player(const SourceAddress& address, const SourceContext& context) {

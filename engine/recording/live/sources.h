@@ -7,9 +7,9 @@
 #include <cstdint>
 #include <functional>
 #include <optional>
-#include <span>
 #include <stop_token>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <opencv2/core.hpp>
@@ -57,16 +57,18 @@ struct SourceAddress {
 
 /// One kind of source.
 struct SourceRow {
-  const char* prefix;    ///< begins its addresses; "" matches any file
-  const char* title;     ///< for people: "camera", "stream"
-  const char* example;   ///< "camera:0"
-  bool is_live = false;  ///< opens a device or the network, so only the user may name it
-  bool reconnects = false;
+  std::string_view prefix;  ///< begins its addresses; "" matches any file
+  bool is_live;             ///< opens a device or the network, so only the user may name it
   /// Throws InputError "ADDRESS: reason".
-  OpenSource (*open)(const SourceAddress& address, const SourceContext& context) = nullptr;
-};
+  OpenSource (*open)(const SourceAddress& address, const SourceContext& context);
+  /// Formats and protocols that a stream may use. Without the lists it could name further URLs and
+  /// files. null: no stream.
+  const char* formats = nullptr;
+  const char* protocols = nullptr;
 
-std::span<const SourceRow> source_rows();
+  /// Returns whether it is connected again after it broke off.
+  bool reconnects() const { return formats != nullptr; }
+};
 
 /// Returns the row of an address; the last one for files.
 const SourceRow& source_row(const std::string& address);

@@ -19,18 +19,6 @@ namespace {
 
 constexpr std::int64_t kPoll_ns = 2'000'000;  // between two reads of a camera, which do not block
 
-/// Formats and protocols that may be opened for an address. Without the lists a stream could name
-/// further URLs and files.
-struct Allowed {
-  std::string_view prefix;
-  const char* formats;
-  const char* protocols;
-};
-constexpr Allowed kAllowed[] = {
-    {"rtsp://", "rtsp", "rtp,udp,tcp"},
-    {"http://", "mpegts,mpjpeg,mjpeg,jpeg_pipe,flv,matroska", "http,tcp"},
-    {"udp://", "mpegts", "udp"}};
-
 class Options {
  public:
   ~Options() { libav::av_dict_free(&entries_); }
@@ -230,14 +218,13 @@ OpenSource open_camera(const SourceAddress& address, const SourceContext& contex
 }
 
 OpenSource open_stream(const SourceAddress& address, const SourceContext& context) {
-  const Allowed& allowed = *std::ranges::find_if(
-      kAllowed, [&](const Allowed& one) { return address.text.starts_with(one.prefix); });
-  if (allowed.prefix == "udp://") check_udp_port(address.text);
+  const SourceRow& row = source_row(address.text);
+  if (row.prefix == "udp://") check_udp_port(address.text);
   Options options;
-  options.set("format_whitelist", allowed.formats);
-  options.set("protocol_whitelist", allowed.protocols);
-  if (allowed.prefix == "udp://") options.set("overrun_nonfatal", "1");
-  if (allowed.prefix == "rtsp://") options.set("allowed_media_types", "video");
+  options.set("format_whitelist", row.formats);
+  options.set("protocol_whitelist", row.protocols);
+  if (row.prefix == "udp://") options.set("overrun_nonfatal", "1");
+  if (row.prefix == "rtsp://") options.set("allowed_media_types", "video");
   const auto input = std::make_shared<LiveInput>(address.text, context);
   input->open(address.text.c_str(), nullptr, 0, options);
   input->find_video(false);
