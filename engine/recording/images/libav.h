@@ -8,10 +8,12 @@
 #include "engine/files/paths.h"
 
 #include <algorithm>
+#include <array>
 #include <climits>
 #include <cstdint>
 #include <memory>
 #include <string>
+#include <utility>
 
 #include <opencv2/core.hpp>
 
@@ -106,6 +108,44 @@ inline Format open_input(const fs::path& file, const char* containers) {
   av_dict_free(&options);
   check_stop();
   return Format(error < 0 ? nullptr : opened);
+}
+
+/// Opens a decoder of the best video; null if that fails. Sets `stream`, to null if there is none
+/// that can be decoded. `threads`: 0 for all processors.
+inline Codec open_decoder(AVFormatContext& format, int threads, AVStream*& stream) {
+  const AVCodec* decoder = nullptr;
+  const int best = av_find_best_stream(&format, AVMEDIA_TYPE_VIDEO, -1, -1, &decoder, 0);
+  stream = best < 0 || decoder == nullptr ? nullptr : format.streams[best];
+  if (stream == nullptr) return nullptr;
+  Codec codec(avcodec_alloc_context3(decoder));
+  codec->thread_count = threads;
+  codec->max_pixels = static_cast<std::int64_t>(limits().video_pixels);
+  const bool opened = avcodec_parameters_to_context(codec.get(), stream->codecpar) >= 0 &&
+                      avcodec_open2(codec.get(), decoder, nullptr) >= 0;
+  return opened ? std::move(codec) : nullptr;
+}
+
+/// Reads the next packet of a stream. Returns false at the end. Throws Stopped.
+inline bool read_packet(AVFormatContext& format, const AVStream& stream, AVPacket& packet) {
+  for (;;) {
+    av_packet_unref(&packet);
+    check_stop();
+    if (av_read_frame(&format, &packet) < 0) {
+      check_stop();
+      return false;
+    }
+    if (packet.stream_index == stream.index) return true;
+  }
+}
+
+inline bool is_damaged(const AVFrame& frame) {
+  return (frame.flags & AV_FRAME_FLAG_CORRUPT) != 0 || frame.decode_error_flags != 0;
+}
+
+inline std::string text_of_error(int error) {
+  std::array<char, AV_ERROR_MAX_STRING_SIZE> why{};
+  av_strerror(error, why.data(), why.size());
+  return why.data();
 }
 
 /// Returns the container's rotation of a stream's images, for av_display_rotation_get; null if

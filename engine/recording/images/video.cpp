@@ -70,31 +70,18 @@ struct VideoDecoder::Input {
       check_stop();
       fail_to_open(file);
     }
-    const AVCodec* decoder = nullptr;
-    const int best =
-        libav::av_find_best_stream(format.get(), AVMEDIA_TYPE_VIDEO, -1, -1, &decoder, 0);
-    if (best < 0 || decoder == nullptr) fail_to_open(file);
-    stream = format->streams[best];
+    codec = libav::open_decoder(*format, 0, stream);
+    if (!codec) fail_to_open(file);
     for (unsigned i = 0; i < format->nb_streams; ++i)
       if (format->streams[i] != stream) format->streams[i]->discard = AVDISCARD_ALL;
-    codec.reset(libav::avcodec_alloc_context3(decoder));
-    codec->thread_count = 0;
-    codec->max_pixels = static_cast<std::int64_t>(limits().video_pixels);
-    if (libav::avcodec_parameters_to_context(codec.get(), stream->codecpar) < 0 ||
-        libav::avcodec_open2(codec.get(), decoder, nullptr) < 0)
-      fail_to_open(file);
   }
 
-  bool read_packet() {
-    for (;;) {
-      libav::av_packet_unref(packet.get());
-      check_stop();
-      if (libav::av_read_frame(format.get(), packet.get()) < 0) {
-        check_stop();
-        return false;
-      }
-      if (packet->stream_index == stream->index) return true;
-    }
+  bool read_packet() { return libav::read_packet(*format, *stream, *packet); }
+
+  void report(const ReadProgress& progress) const {
+    if (!progress) return;
+    const double bytes = 1 + static_cast<double>(libav::avio_size(format->pb));
+    progress(static_cast<double>(libav::avio_seek(format->pb, 0, SEEK_CUR)) / bytes);
   }
 
   bool decode_frame() {
@@ -105,10 +92,6 @@ struct VideoDecoder::Input {
       // Skips broken packets, as players do.
       libav::avcodec_send_packet(codec.get(), read_packet() ? packet.get() : nullptr);
     }
-  }
-
-  bool is_damaged() const {
-    return (frame->flags & AV_FRAME_FLAG_CORRUPT) != 0 || frame->decode_error_flags != 0;
   }
 
   bool seek(std::int64_t time) {
@@ -174,12 +157,10 @@ bool VideoDecoder::index_packets(const ReadProgress& progress, int first_frames)
 
 PacketTimes VideoDecoder::read_packets(const ReadProgress& progress, int first_frames) {
   PacketTimes times;
-  const double bytes = 1 + static_cast<double>(libav::avio_size(input_->format->pb));
   while (input_->read_packet()) {
     spend_items(file_);
     times.add(*input_->packet, *input_->stream->codecpar);
-    if (progress)
-      progress(static_cast<double>(libav::avio_seek(input_->format->pb, 0, SEEK_CUR)) / bytes);
+    input_->report(progress);
     if (first_frames == 0 || std::ssize(times.all) != first_frames) continue;
     PacketTimes first = times;
     first.finish();
@@ -200,7 +181,7 @@ void VideoDecoder::drop_undecodable() {
   const auto first_whole = std::ranges::lower_bound(index_.times, key_time);
   std::vector<std::int64_t> kept(first_whole, index_.times.end());
   for (int frame = next_frame(); frame >= 0 && index_.times[frame] < key_time; frame = next_frame())
-    if (!input_->is_damaged()) kept.push_back(index_.times[frame]);
+    if (!libav::is_damaged(*input_->frame)) kept.push_back(index_.times[frame]);
   std::ranges::sort(kept);
   index_.hidden_count += static_cast<int>(index_.times.size() - kept.size());
   index_.times = std::move(kept);
@@ -220,9 +201,7 @@ void VideoDecoder::count_frames(const ReadProgress& progress) {
     spend_pixels(file_, file_bytes, static_cast<std::uint64_t>(index_.size.area()));
     index_.times.push_back(std::llround(frame * period));
     shown.push_back(input_->frame->best_effort_timestamp);
-    const double bytes = 1 + static_cast<double>(libav::avio_size(input_->format->pb));
-    if (progress)
-      progress(static_cast<double>(libav::avio_seek(input_->format->pb, 0, SEEK_CUR)) / bytes);
+    input_->report(progress);
   }
   const bool known = std::ranges::find(shown, AV_NOPTS_VALUE) == shown.end();
   if (known && is_strictly_ascending(shown)) index_.times = std::move(shown);

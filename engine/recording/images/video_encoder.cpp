@@ -62,9 +62,7 @@ void VideoEncoder::check(int result) const {
   const AVIOContext* stream = output_->format ? output_->format->pb : nullptr;
   const int error = result >= 0 && stream != nullptr ? stream->error : result;
   if (error >= 0) return;
-  std::array<char, AV_ERROR_MAX_STRING_SIZE> why{};
-  libav::av_strerror(error, why.data(), why.size());
-  refuse(file_, "cannot be written: {}", why.data());
+  refuse(file_, "cannot be written: {}", libav::text_of_error(error));
 }
 
 void VideoEncoder::drain() {

@@ -35,7 +35,7 @@ class Comparison {
     const std::int64_t time = entries_[from].time;
     if (libav::av_seek_frame(&format_, stream_.index, time, AVSEEK_FLAG_BACKWARD) < 0) return -1;
     int next = -1;
-    for (int i = 0; i < most && read_packet(); ++i) {
+    for (int i = 0; i < most && libav::read_packet(format_, stream_, *packet_); ++i) {
       const std::int64_t shown = time_of(*packet_);
       if (shown == AV_NOPTS_VALUE) return -1;
       if (!shift_) shift_ = shown - entries_.front().time;
@@ -49,14 +49,6 @@ class Comparison {
   std::int64_t shift() const { return shift_.value_or(0); }
 
  private:
-  bool read_packet() {
-    do {
-      libav::av_packet_unref(packet_.get());
-      check_stop();
-      if (libav::av_read_frame(&format_, packet_.get()) < 0) return false;
-    } while (packet_->stream_index != stream_.index);
-    return true;
-  }
   int entry_at(std::int64_t time) const {
     const auto at = std::ranges::lower_bound(entries_, time, {}, &IndexEntry::time);
     return at == entries_.end() ? -1 : static_cast<int>(at - entries_.begin());

@@ -6,7 +6,6 @@
 #include "engine/recording/live/sources.h"
 
 #include <algorithm>
-#include <array>
 #include <cerrno>
 #include <regex>
 #include <string_view>
@@ -32,12 +31,6 @@ class Options {
  private:
   AVDictionary* entries_ = nullptr;
 };
-
-std::string text_of_error(int error) {
-  std::array<char, AV_ERROR_MAX_STRING_SIZE> why{};
-  libav::av_strerror(error, why.data(), why.size());
-  return why.data();
-}
 
 /// An input of libavformat, decoded image by image.
 class LiveInput {
@@ -65,17 +58,9 @@ class LiveInput {
       if (const int error = libav::avformat_find_stream_info(format_.get(), nullptr); error < 0)
         fail(error);
     }
-    const AVCodec* decoder = nullptr;
-    const int best =
-        libav::av_find_best_stream(format_.get(), AVMEDIA_TYPE_VIDEO, -1, -1, &decoder, 0);
-    if (best < 0 || decoder == nullptr) refuse_source("has no video that can be decoded");
-    stream_ = format_->streams[best];
-    codec_.reset(libav::avcodec_alloc_context3(decoder));
-    codec_->thread_count = 1;  // several threads delay the images
-    codec_->max_pixels = static_cast<std::int64_t>(limits().video_pixels);
-    if (libav::avcodec_parameters_to_context(codec_.get(), stream_->codecpar) < 0 ||
-        libav::avcodec_open2(codec_.get(), decoder, nullptr) < 0)
-      refuse_source("has a video that cannot be decoded");
+    codec_ = libav::open_decoder(*format_, 1, stream_);  // several threads delay the images
+    if (stream_ == nullptr) refuse_source("has no video that can be decoded");
+    if (!codec_) refuse_source("has a video that cannot be decoded");
     // Raw JPEG has no times; libavformat invents 25 frames per second.
     const std::string_view name = format_->iformat->name;
     has_times_ = name.find("jpeg") == std::string_view::npos;
@@ -109,7 +94,7 @@ class LiveInput {
     // libavformat reports unknown content as any of these.
     if (error == AVERROR_INVALIDDATA || error == AVERROR(EIO) || error == AVERROR(EINVAL))
       refuse_source("sends no video in MPEG-TS, MJPEG or RTSP; check the sender and the address");
-    refuse_source(text_of_error(error) + "; check the sender and the address");
+    refuse_source(libav::text_of_error(error) + "; check the sender and the address");
   }
 
   /// Sends the next packet of the video to the decoder, at the end an empty one. Returns false if
@@ -135,9 +120,7 @@ class LiveInput {
 
   std::optional<TimedImage> image_of_frame() {
     const std::int64_t arrival_ns = context_.clock.now_ns();
-    const bool damaged =
-        (frame_->flags & AV_FRAME_FLAG_CORRUPT) != 0 || frame_->decode_error_flags != 0;
-    if (damaged) {
+    if (libav::is_damaged(*frame_)) {
       ++broken_;
       return std::nullopt;
     }
