@@ -1,10 +1,12 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/files/refuse.h"
+#include "engine/base/error.h"
 #include "engine/files/text_file.h"
 #include "engine/recording/companions/lens_formats.h"
 
 #include <algorithm>
+
+#include <fmt/format.h>
 
 namespace gpo {
 namespace {
@@ -192,17 +194,6 @@ void report_calibration(Recording& recording,
                                           one.file.filename().string(),
                                           one.reason));
   }
-}
-
-std::optional<fs::path> find_calibration(const fs::path& folder) {
-  return search_calibration({folder}).file;
-}
-
-fs::path calibration_in(const fs::path& folder) {
-  if (const auto file = find_calibration(folder)) return *file;
-  refuse(folder,
-         "found no calibration, expected camera.yaml or another file of EuRoC, OpenCV or "
-         "Kalibr; `gpo-inspector calibrate` makes one");
 }
 
 }  // namespace gpo

@@ -45,10 +45,6 @@ void report_calibration(Recording& recording,
                         const CalibrationSearch& search,
                         const Calibration& calibration);
 
-std::optional<fs::path> find_calibration(const fs::path& folder);
-/// The same. Throws InputError if there is none.
-fs::path calibration_in(const fs::path& folder);
-
 /// Reads EuRoC's `T_BS`: a list of 16 numbers, 4 x 4 lists, or {rows, cols, data}. Throws
 /// InputError unless it is a rigid transformation.
 Pose rigid_motion(const YamlEntry& entry);

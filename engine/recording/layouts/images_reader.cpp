@@ -171,7 +171,10 @@ FoundCalibration calibration_of(const fs::path& folder,
     return {calibration, log->camera_file, search};
   }
   if (!search.file && !required) return {{}, folder / "camera.yaml", search, false};
-  if (!search.file) calibration_in(folder);  // throws
+  if (!search.file)
+    refuse(folder,
+           "found no calibration, expected camera.yaml or another file of EuRoC, OpenCV or "
+           "Kalibr; `gpo-inspector calibrate` makes one");
   return {read_calibration(*search.file), *search.file, search};
 }
 

@@ -48,13 +48,13 @@ TEST_F(CalibrationBesideImages, IsFoundByItsKeys) {
 TEST_F(CalibrationBesideImages, MayHaveAnEndingInUpperCase) {
   for (const char* name : {"Camera.YAML", "CALIB.YML", "desk-CAMCHAIN.Yaml", "settings.YAML"}) {
     const auto file = folder.write(name, kKalibrText);
-    EXPECT_EQ(find_calibration(folder.path()), file);
+    EXPECT_EQ(search_calibration({folder.path()}).file, file);
     EXPECT_EQ(open()->camera_source, CameraSource::file) << name;
     std::filesystem::remove(file);
   }
   folder.write("a.yaml", kOrbSlamText);
   const auto usual = folder.write("Camera.YAML", kKalibrText);
-  EXPECT_EQ(find_calibration(folder.path()), usual);
+  EXPECT_EQ(search_calibration({folder.path()}).file, usual);
 }
 
 /// The configuration has the extrinsics and the time offset, whatever the files' names.
@@ -67,7 +67,7 @@ TEST_F(CalibrationBesideImages, IsVinsFusionsConfigurationAndNotTheCameraItNames
     const auto lens = folder.write(camera, kMeiText);
     const auto file = folder.write("euroc_mono_imu_config.yaml", config + camera + "\n");
     const auto recording = open();
-    EXPECT_EQ(find_calibration(folder.path()), file) << camera;
+    EXPECT_EQ(search_calibration({folder.path()}).file, file) << camera;
     ASSERT_TRUE(recording->T_body_camera) << camera;
     EXPECT_GT(recording->T_body_camera->R_wc(1, 0), 0.99);
     EXPECT_THAT(recording->files,

@@ -188,7 +188,7 @@ TEST(LensFormats, ReadAllFilesOfOtherPrograms) {
     const TestFolder folder;
     const auto file = folder.write(std::filesystem::path(one.name).filename().string(), one.text);
     expect_lens(read_calibration(file), one);
-    EXPECT_EQ(find_calibration(folder.path()), file);
+    EXPECT_EQ(search_calibration({folder.path()}).file, file);
   }
 }
 

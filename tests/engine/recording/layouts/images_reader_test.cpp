@@ -236,6 +236,8 @@ TEST_F(ImagesReader, UsesTracksWithoutImagesOrTimes) {
   folder.write("frame_timestamps.txt", "1\n2\n3\n");
   EXPECT_EQ(error(),
             file("tracks.csv") + ":3: found frame 4, expected 0 to 2, the frames of the recording");
+  std::filesystem::remove(folder.path() / "camera.yaml");
+  EXPECT_THAT(error(), HasSubstr("found no calibration, expected camera.yaml"));
 }
 
 TEST_F(ImagesReader, UsesTheBoardsPlane) {
