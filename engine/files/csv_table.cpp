@@ -272,6 +272,12 @@ double csv_number(const CsvTable& table, const CsvRow& row, int column) {
   return *value;
 }
 
+Eigen::Vector3d csv_vector(const CsvTable& table, const CsvRow& row, int first) {
+  return {csv_number(table, row, first),
+          csv_number(table, row, first + 1),
+          csv_number(table, row, first + 2)};
+}
+
 std::int64_t csv_integer(const CsvTable& table, const CsvRow& row, int column) {
   const std::string_view cell = csv_cell(table, row, column);
   const auto value = parse_integer(cell);

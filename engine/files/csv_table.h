@@ -11,6 +11,8 @@
 #include <string_view>
 #include <vector>
 
+#include <Eigen/Core>
+
 namespace gpo {
 
 /// An unparsed row; read it with `csv_cell`, `csv_number` or `csv_integer`.
@@ -54,6 +56,8 @@ int drop_unmeasured(CsvTable& table, int first, int count);
 int drop_repeats(CsvTable& table);
 /// Returns the finite number in a cell. Throws InputError with file and line.
 double csv_number(const CsvTable& table, const CsvRow& row, int column);
+/// Returns the same of three columns from `first` on.
+Eigen::Vector3d csv_vector(const CsvTable& table, const CsvRow& row, int first);
 std::int64_t csv_integer(const CsvTable& table, const CsvRow& row, int column);
 
 /// Returns the first column as strictly ascending time stamps [ns], in the unit of the header

@@ -43,7 +43,7 @@ std::optional<Eigen::Vector3d> mean_bias(const CsvTable& table) {
   int count = 0;
   for (const auto& row : table.rows) {
     if (!is_measured(table, row, kBiasColumn, 3)) continue;
-    for (int i = 0; i < 3; ++i) sum[i] += csv_number(table, row, kBiasColumn + i);
+    sum += csv_vector(table, row, kBiasColumn);
     ++count;
   }
   if (count == 0) return std::nullopt;
@@ -81,11 +81,6 @@ Gyroscope read_gyroscope(const fs::path& file, TimeUnit unit) {
   const double scale = rad_s_per_unit(table);
   const bool accelerations =
       table.columns >= 7 && (table.header.empty() || lower_case(table.header[4])[0] == 'a');
-  const auto vector = [&](const CsvRow& row, int column) {
-    return Eigen::Vector3d(csv_number(table, row, column),
-                           csv_number(table, row, column + 1),
-                           csv_number(table, row, column + 2));
-  };
   Gyroscope gyroscope;
   gyroscope.file = file;
   AccelerationSamples forces;
@@ -94,11 +89,11 @@ Gyroscope read_gyroscope(const fs::path& file, TimeUnit unit) {
     if (is_measured(table, row, 1, 3)) {
       gyroscope.timestamps_ns.push_back(times_ns[i]);
       gyroscope.lines.push_back(row.line);
-      gyroscope.rates_rad_s.emplace_back(scale * vector(row, 1));
+      gyroscope.rates_rad_s.emplace_back(scale * csv_vector(table, row, 1));
     }
     if (accelerations && is_measured(table, row, 4, 3)) {
       forces.timestamps_ns.push_back(times_ns[i]);
-      forces.specific_force.push_back(vector(row, 4));
+      forces.specific_force.push_back(csv_vector(table, row, 4));
     }
   }
   gyroscope.left_out = repeats + static_cast<int>(times_ns.size() - gyroscope.rates_rad_s.size());
@@ -176,12 +171,12 @@ PosePath read_euroc_path(const fs::path& file) {
   return path;
 }
 
-PosePath read_tum_path(const fs::path& file, TimeUnit unit) {
+PosePath read_tum_path(const fs::path& file) {
   const CsvTable table = read_csv(file,
                                   {"timestamp", "tx", "ty", "tz", "qx", "qy", "qz", "qw"},
                                   CsvColumns::exactly,
                                   Separator::blanks);
-  return path_of(table, unit, {7, 4, 5, 6});
+  return path_of(table, TimeUnit::seconds, {7, 4, 5, 6});
 }
 
 std::optional<Pose> pose_at(const PosePath& path, std::int64_t time_ns) {
@@ -266,15 +261,13 @@ Plane read_plane(const fs::path& file) {
   return {Eigen::Vector3d(n[0], n[1], n[2]) / norm, distance / norm};
 }
 
-std::string plane_yaml(const Plane& plane) {
-  return fmt::format("# In the world of the ground truth, meters.\nnormal: [{}]\ndistance: {}\n",
-                     fmt::join(plane.normal, ", "),
-                     plane.distance);
-}
-
 std::map<std::string, std::string> sidecar_texts(const Recording& recording) {
   std::map<std::string, std::string> files;
-  if (recording.plane) files["plane.yaml"] = plane_yaml(*recording.plane);
+  if (const auto& plane = recording.plane)
+    files["plane.yaml"] =
+        fmt::format("# In the world of the ground truth, meters.\nnormal: [{}]\ndistance: {}\n",
+                    fmt::join(plane->normal, ", "),
+                    plane->distance);
   if (recording.board) files["board.yaml"] = board_yaml(*recording.board);
   if (recording.tracks.empty()) return files;
   std::string& text = files["tracks.csv"];

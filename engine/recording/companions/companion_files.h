@@ -95,8 +95,8 @@ struct PosePath {
 /// Reads EuRoC's data.csv: time stamp, p, q_wxyz, optionally v, b_w, b_a. Throws InputError.
 PosePath read_euroc_path(const fs::path& file);
 
-/// Reads TUM's groundtruth.txt: time (in `unit`), p, q_xyzw, with blanks. Throws InputError.
-PosePath read_tum_path(const fs::path& file, TimeUnit unit = TimeUnit::seconds);
+/// Reads TUM's groundtruth.txt: time [s], p, q_xyzw, with blanks. Throws InputError.
+PosePath read_tum_path(const fs::path& file);
 
 /// Interpolates a pose (slerp and linear); nullopt outside of the path and in long gaps.
 std::optional<Pose> pose_at(const PosePath& path, std::int64_t time_ns);
@@ -151,9 +151,8 @@ Board read_board(const fs::path& file);
 /// Reads plane.yaml: {normal: [x, y, z], distance: d}. Throws InputError.
 Plane read_plane(const fs::path& file);
 
-// The texts of these files.
+/// Returns the text of board.yaml.
 std::string board_yaml(const Board& board);
-std::string plane_yaml(const Plane& plane);
 
 /// Returns names and texts of a recording's plane.yaml, board.yaml and tracks.csv.
 std::map<std::string, std::string> sidecar_texts(const Recording& recording);

@@ -179,9 +179,8 @@ void add_forces(Gyroscope& gyroscope,
   for (std::size_t i = 0; i < table.rows.size(); ++i) {
     const CsvRow& row = table.rows[i];
     if (!is_measured(table, row, first, 3)) continue;
-    const auto at = [&](int k) { return csv_number(table, row, first + k); };
     samples.timestamps_ns.push_back(times_ns[i]);
-    samples.specific_force.emplace_back(at(0), at(1), at(2));
+    samples.specific_force.push_back(csv_vector(table, row, first));
     lengths.push_back(samples.specific_force.back().norm());
   }
   if (lengths.empty()) return;
@@ -304,10 +303,8 @@ Log read_ios_logger(const fs::path& folder) {
   gyroscope.left_out = drop_unmeasured(table, 1, 3);
   gyroscope.file = log.file = *rates;
   const auto times_ns = csv_time_stamps(table, TimeUnit::seconds);
-  for (std::size_t i = 0; i < table.rows.size(); ++i) {
-    const auto rate = [&](int k) { return csv_number(table, table.rows[i], k); };
-    add_sample(gyroscope, table, table.rows[i], times_ns[i], {rate(1), rate(2), rate(3)});
-  }
+  for (std::size_t i = 0; i < table.rows.size(); ++i)
+    add_sample(gyroscope, table, table.rows[i], times_ns[i], csv_vector(table, table.rows[i], 1));
   if (const auto forces = first_of(folder, {"Accel.txt", "accelerometer.csv"}))
     add_phone_forces(gyroscope, *forces);
   log.T_body_camera = Pose{rear_camera(), Eigen::Vector3d::Zero()};
@@ -352,14 +349,11 @@ Log read_gcsv(const fs::path& file) {
     const double time_s = tscale * csv_number(table, row, 0);
     if (!(std::abs(time_s) < kMostTime_s))
       csv_fail(table, row.line, "an implausible time", "seconds");
-    const Eigen::Vector3d rates(
-        csv_number(table, row, 1), csv_number(table, row, 2), csv_number(table, row, 3));
-    add_sample(gyroscope, table, row, std::llround(1e9 * time_s), gscale * rates);
+    add_sample(
+        gyroscope, table, row, std::llround(1e9 * time_s), gscale * csv_vector(table, row, 1));
     if (!accelerates || !is_measured(table, row, 4, 3)) continue;
-    const Eigen::Vector3d force(
-        csv_number(table, row, 4), csv_number(table, row, 5), csv_number(table, row, 6));
     forces.timestamps_ns.push_back(gyroscope.timestamps_ns.back());
-    forces.specific_force.emplace_back(kStandardGravity_m_s2 * *ascale * force);
+    forces.specific_force.emplace_back(kStandardGravity_m_s2 * *ascale * csv_vector(table, row, 4));
   }
   add_accelerations(forces, gyroscope);
   log.gyroscope = std::move(gyroscope);
