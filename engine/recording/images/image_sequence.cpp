@@ -1,7 +1,5 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/recording/images/image_sequence.h"
-
 #include "engine/base/error.h"
 #include "engine/files/text_file.h"
 #include "engine/recording/images/images.h"

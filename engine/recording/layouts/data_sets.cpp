@@ -1,12 +1,11 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/recording/layouts/data_sets.h"
-
 #include "engine/files/refuse.h"
 #include "engine/files/text_file.h"
 #include "engine/geometry/decompositions.h"
 #include "engine/recording/companions/colmap_model.h"
 #include "engine/recording/companions/companion_files.h"
+#include "engine/recording/layouts/open_recording.h"
 
 #include <algorithm>
 #include <limits>

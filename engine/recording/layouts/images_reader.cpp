@@ -3,9 +3,7 @@
 #include "engine/files/refuse.h"
 #include "engine/files/text_file.h"
 #include "engine/recording/companions/companion_files.h"
-#include "engine/recording/images/image_sequence.h"
 #include "engine/recording/images/images.h"
-#include "engine/recording/layouts/data_sets.h"
 #include "engine/recording/layouts/open_recording.h"
 #include "engine/recording/loggers/logs.h"
 

@@ -79,6 +79,11 @@ std::shared_ptr<const FrameCache> open_bag_images(const fs::path& path,
 /// Reads `frame,track,x,y` [raw px], sorted by frame, then track. Frames are below `frame_count`.
 std::vector<TrackObservation> read_tracks(const fs::path& file, std::optional<int> frame_count);
 
+/// Reads the poses of a data set's images into the recording's truth, if it has none: those of
+/// KITTI odometry, 7-Scenes, Replica, a COLMAP project or nerfstudio. Files that cannot be read are
+/// reported with the reason.
+void add_data_set_truth(Recording& recording, const fs::path& folder);
+
 /// Opens any layout. Checks that all images exist, but decodes only the first. Throws InputError.
 std::shared_ptr<const Recording> open_recording(const fs::path& path,
                                                 const OpenOptions& options = {});

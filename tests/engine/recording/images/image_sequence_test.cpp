@@ -1,6 +1,6 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/recording/images/image_sequence.h"
+#include "engine/recording/images/images.h"
 
 #include <gmock/gmock.h>
 
