@@ -135,13 +135,6 @@ void add_log(Recording& recording, const Log& log, int quarter_turns, const Came
   recording.truth->jumps = jumps_of(recording.timestamps_ns, recording.truth->poses);
 }
 
-struct FoundCalibration {
-  Calibration calibration;
-  fs::path file;
-  CalibrationSearch search;
-  bool found = true;
-};
-
 /// Folders that may have the calibration of images: theirs, and Replica's one above the scene.
 std::vector<fs::path> calibration_folders(const fs::path& folder, const ImageSequence& sequence) {
   std::vector<fs::path> folders = {folder};
@@ -150,12 +143,13 @@ std::vector<fs::path> calibration_folders(const fs::path& folder, const ImageSeq
   return folders;
 }
 
-/// The user's calibration, or else the log's camera. Throws InputError if one is required.
-FoundCalibration calibration_of(const fs::path& folder,
-                                const ImageSequence& sequence,
-                                const std::optional<Log>& log,
-                                bool required) {
-  CalibrationSearch search = search_calibration(calibration_folders(folder, sequence));
+/// Finds the user's calibration, or else the log's camera. Throws InputError if one is required.
+Calibration calibration_of(const fs::path& folder,
+                           const ImageSequence& sequence,
+                           const std::optional<Log>& log,
+                           bool required,
+                           CalibrationSearch& search) {
+  search = search_calibration(calibration_folders(folder, sequence));
   const fs::path above = fs::absolute(folder) / ".." / "cam_params.json";
   if (!search.file && is_file(folder / "traj.txt")) search.file = if_file(above.lexically_normal());
   if (log)
@@ -166,14 +160,14 @@ FoundCalibration calibration_of(const fs::path& folder,
     calibration.camera = *log->camera;
     calibration.format = "log";
     search.file = log->camera_file;
-    return {calibration, log->camera_file, search};
+    return calibration;
   }
-  if (!search.file && !required) return {{}, folder / "camera.yaml", search, false};
+  if (!search.file && !required) return {};
   if (!search.file)
     refuse(folder,
            "found no calibration, expected camera.yaml or another file of EuRoC, OpenCV or "
            "Kalibr; `gpo-inspector calibrate` makes one");
-  return {read_calibration(*search.file), *search.file, search};
+  return read_calibration(*search.file);
 }
 
 }  // namespace
@@ -213,11 +207,12 @@ Recording read_images(const fs::path& path, const OpenOptions& options) {
   ImageSequence sequence = video ? ImageSequence{} : find_image_sequence(folder);
   const auto names = times_in_names(sequence.files);
   Recording recording;
-  const auto [calibration, calibration_file, search, found] =
-      calibration_of(folder, sequence, log, tracks.has_value());
+  CalibrationSearch search;
+  const Calibration calibration = calibration_of(folder, sequence, log, tracks.has_value(), search);
   report_calibration(recording, search, calibration);
   recording.files.insert(recording.files.end(), sequence.others.begin(), sequence.others.end());
   report_unreadable(recording, sequence.unreadable);
+  const fs::path calibration_file = search.file.value_or(folder / "camera.yaml");
   const std::string name = calibration_file.filename().string();
   recording.camera = calibration.camera;
   recording.T_body_camera = calibration.T_body_camera;
@@ -237,7 +232,7 @@ Recording read_images(const fs::path& path, const OpenOptions& options) {
   } else if (!sequence.files.empty()) {
     add_image_files(recording, sequence.files, options.cache_bytes);
   }
-  if (!found) {
+  if (!search.file) {
     const auto& files = recording.image_files;
     guess_camera(recording, files.empty() ? std::nullopt : stored_view(files.front()));
   }

@@ -191,11 +191,6 @@ void add_forces(Gyroscope& gyroscope,
   add_accelerations(samples, gyroscope);
 }
 
-void add_phone_forces(Gyroscope& gyroscope, const fs::path& file) {
-  const CsvTable table = phone_samples(file);
-  add_forces(gyroscope, table, 1, csv_time_stamps(table, TimeUnit::seconds));
-}
-
 struct GcsvFile {
   CsvTable table;                      ///< its rows have at least four cells
   std::map<std::string, CsvRow> head;  ///< lines and texts of values by key
@@ -305,8 +300,10 @@ Log read_ios_logger(const fs::path& folder) {
   const auto times_ns = csv_time_stamps(table, TimeUnit::seconds);
   for (std::size_t i = 0; i < table.rows.size(); ++i)
     add_sample(gyroscope, table, table.rows[i], times_ns[i], csv_vector(table, table.rows[i], 1));
-  if (const auto forces = first_of(folder, {"Accel.txt", "accelerometer.csv"}))
-    add_phone_forces(gyroscope, *forces);
+  if (const auto file = first_of(folder, {"Accel.txt", "accelerometer.csv"})) {
+    const CsvTable forces = phone_samples(*file);
+    add_forces(gyroscope, forces, 1, csv_time_stamps(forces, TimeUnit::seconds));
+  }
   log.T_body_camera = Pose{rear_camera(), Eigen::Vector3d::Zero()};
   log.notes.push_back(rates->filename().string() +
                       ": assuming the phone's axes and that the camera is its rear one");
