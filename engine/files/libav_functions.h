@@ -4,7 +4,6 @@
 
 #include "engine/files/late_function.h"
 
-#include <cstdint>
 
 extern "C" {
 #include <libavcodec/avcodec.h>

@@ -8,7 +8,6 @@
 #include <algorithm>
 #include <cmath>
 #include <deque>
-#include <initializer_list>
 
 #include <Eigen/Geometry>
 #include <fmt/ranges.h>

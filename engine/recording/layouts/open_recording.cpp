@@ -9,7 +9,6 @@
 #include "engine/recording/images/images.h"
 
 #include <algorithm>
-#include <cmath>
 #include <exception>
 #include <tuple>
 

@@ -6,7 +6,6 @@
 #include <cerrno>
 #include <cstring>
 #include <map>
-#include <tuple>
 
 #include <fcntl.h>
 #include <fmt/format.h>
