@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
+#include <string>
 #include <string_view>
 
 namespace gpo {
@@ -31,6 +32,12 @@ inline std::uint64_t big_endian(std::string_view bytes, std::uint64_t place, std
 }
 inline std::uint64_t little_endian(std::string_view bytes, std::uint64_t place, std::size_t count) {
   return number_at(bytes, place, count, ByteOrder::little);
+}
+
+/// Returns a number as it is in memory, which is little-endian on all of our machines.
+template <class T>
+std::string stored(const T& number) {
+  return {reinterpret_cast<const char*>(&number), sizeof(number)};
 }
 
 /// Reads little-endian fields of bags and other binary files. Beyond the end, all fields are 0 or

@@ -1,23 +1,16 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
+#include "engine/files/byte_cursor.h"
 #include "engine/files/refuse.h"
 #include "engine/recording/bags/messages.h"
 
 #include <algorithm>
-#include <cstring>
 #include <fstream>
 
 #include <zstd.h>
 
 namespace gpo {
 namespace {
-
-template <class T>
-std::string stored(T value) {
-  std::array<char, sizeof(T)> bytes;
-  std::memcpy(bytes.data(), &value, sizeof(T));
-  return {bytes.data(), bytes.size()};
-}
 
 template <class Length = std::uint32_t>
 std::string stored_text(std::string_view text) {

@@ -1,10 +1,10 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
+#include "engine/files/byte_cursor.h"
 #include "engine/files/text_file.h"
 #include "engine/recording/bags/messages.h"
 
 #include <algorithm>
-#include <cstring>
 #include <stdexcept>
 
 #include <Eigen/Geometry>
@@ -20,9 +20,7 @@ class MessageBytes {
   template <class T>
   void number(T value) {
     if (cdr_) bytes_.resize((bytes_.size() + sizeof(T) - 1) / sizeof(T) * sizeof(T));
-    std::array<char, sizeof(T)> stored;
-    std::memcpy(stored.data(), &value, sizeof(T));
-    bytes_.append(stored.data(), stored.size());
+    bytes_ += stored(value);
   }
   void data(std::string_view data) {
     number(static_cast<std::uint32_t>(data.size()));

@@ -2,13 +2,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/base/error.h"
 #include "engine/base/stop.h"
+#include "engine/files/byte_cursor.h"
 #include "engine/files/output_file.h"
 #include "engine/files/text_file.h"
 #include "engine/geometry/statistics.h"
 #include "engine/recording/board/board.h"
 
 #include <algorithm>
-#include <cstring>
 #include <limits>
 #include <numeric>
 #include <system_error>
@@ -107,13 +107,7 @@ constexpr std::string_view kMagic = "gpo board views\n";
 /// Frame, whether the board was found, R_wc, p_wc, uncertainty.
 using StoredView = std::array<double, 18>;
 
-std::string bytes_of(const auto& value) {
-  std::string bytes(sizeof(value), '\0');
-  std::memcpy(bytes.data(), &value, sizeof(value));
-  return bytes;
-}
-
-StoredView stored(int frame, const std::optional<BoardPose>& view) {
+StoredView row_of(int frame, const std::optional<BoardPose>& view) {
   StoredView one{static_cast<double>(frame), view ? 1.0 : 0.0};
   if (!view) return one;
   Eigen::Map<Eigen::Matrix3d>(one.data() + 2) = view->pose.R_wc;
@@ -224,14 +218,11 @@ BoardViews load_board_views(const fs::path& file) {
   constexpr std::size_t kSum = sizeof(std::uint64_t);
   if (!bytes.starts_with(head) || bytes.size() < head.size() + kSum) return {};
   const std::string_view body = std::string_view(bytes).substr(0, bytes.size() - kSum);
-  if (bytes.substr(body.size()) != bytes_of(fnv1a(body))) return {};
+  if (bytes.substr(body.size()) != stored(fnv1a(body))) return {};
   BoardViews views;
-  for (std::size_t i = head.size(); i + sizeof(StoredView) <= body.size();
-       i += sizeof(StoredView)) {
-    StoredView one;
-    std::memcpy(&one, body.data() + i, sizeof(one));
+  ByteCursor cursor(body.substr(head.size()));
+  for (auto one = cursor.number<StoredView>(); cursor.ok(); one = cursor.number<StoredView>())
     views[static_cast<int>(one[0])] = restored(one);
-  }
   return views;
 }
 
@@ -239,8 +230,8 @@ void save_board_views(const fs::path& file, const BoardViews& views) {
   BoardViews all = load_board_views(file);
   all.insert(views.begin(), views.end());
   std::string bytes = head_of(file);
-  for (const auto& [frame, view] : all) bytes += bytes_of(stored(frame, view));
-  bytes += bytes_of(fnv1a(bytes));
+  for (const auto& [frame, view] : all) bytes += stored(row_of(frame, view));
+  bytes += stored(fnv1a(bytes));
   std::error_code error;
   fs::create_directories(file.parent_path(), error);
   try {
