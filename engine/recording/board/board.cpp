@@ -217,17 +217,10 @@ struct Linearized {
   double squared_px2 = 0;
   Matrix6 JtJ = Matrix6::Zero();
   Vector6 Jtr = Vector6::Zero();
-};
+  bool in_front = true;  ///< whether all corners are in front of the camera
 
-double squared_error(const Visible& visible, const Camera& camera, const Pose& T_camera_board) {
-  double sum = 0;
-  for (std::size_t i = 0; i < visible.points.size(); ++i) {
-    const Eigen::Vector3d x = to_world(T_camera_board, visible.points[i]);
-    if (x.z() <= 0) return std::numeric_limits<double>::infinity();
-    sum += (project(camera, x) - visible.raw_px[i]).squaredNorm();
-  }
-  return sum;
-}
+  double error() const { return in_front ? squared_px2 : std::numeric_limits<double>::infinity(); }
+};
 
 Eigen::Matrix<double, 2, 3> projection_jacobian(const Camera& camera, const Eigen::Vector3d& x) {
   const double step = 1e-6 * x.norm();
@@ -247,6 +240,7 @@ Linearized linearize(const Visible& visible, const Camera& camera, const Pose& T
     const Eigen::Matrix<double, 2, 3> P = projection_jacobian(camera, x);
     Eigen::Matrix<double, 2, 6> J;
     J << -P * skew(x), P;
+    sum.in_front = sum.in_front && x.z() > 0;
     sum.squared_px2 += r.squaredNorm();
     sum.JtJ += J.transpose() * J;
     sum.Jtr += J.transpose() * r;
@@ -256,18 +250,17 @@ Linearized linearize(const Visible& visible, const Camera& camera, const Pose& T
 
 Pose refined(const Visible& visible, const Camera& camera, Pose T_camera_board) {
   double damping = 1e-4;
-  double error = squared_error(visible, camera, T_camera_board);
-  for (int iteration = 0; iteration < 30 && std::isfinite(error); ++iteration) {
-    const Linearized now = linearize(visible, camera, T_camera_board);
+  Linearized now = linearize(visible, camera, T_camera_board);
+  for (int iteration = 0; iteration < 30 && std::isfinite(now.error()); ++iteration) {
     Matrix6 A = now.JtJ;
     A.diagonal() *= 1 + damping;
     const Vector6 step = -solve_symmetric(A, now.Jtr);
     const Pose moved = Pose{so3_exp(step.head<3>()), step.tail<3>()} * T_camera_board;
-    const double moved_error = squared_error(visible, camera, moved);
-    if (moved_error < error) {
-      const bool settled = error - moved_error < 1e-10 * error;
+    const Linearized there = linearize(visible, camera, moved);
+    if (there.error() < now.error()) {
+      const bool settled = now.error() - there.error() < 1e-10 * now.error();
       T_camera_board = moved;
-      error = moved_error;
+      now = there;
       damping /= 10;
       if (settled) break;
     } else {
