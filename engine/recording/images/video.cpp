@@ -110,14 +110,6 @@ struct VideoDecoder::Input {
   }
 };
 
-namespace {
-
-bool is_strictly_ascending(const std::vector<std::int64_t>& times) {
-  return std::ranges::adjacent_find(times, std::greater_equal()) == times.end();
-}
-
-}  // namespace
-
 VideoDecoder::VideoDecoder(fs::path file, const ReadProgress& progress, int first_frames)
     : file_(std::move(file)), input_(std::make_unique<Input>(file_)) {
   const AVStream& stream = *input_->stream;
@@ -204,7 +196,8 @@ void VideoDecoder::count_frames(const ReadProgress& progress) {
     input_->report(progress);
   }
   const bool known = std::ranges::find(shown, AV_NOPTS_VALUE) == shown.end();
-  if (known && is_strictly_ascending(shown)) index_.times = std::move(shown);
+  const bool ascending = std::ranges::adjacent_find(shown, std::greater_equal()) == shown.end();
+  if (known && ascending) index_.times = std::move(shown);
 }
 
 VideoDecoder::~VideoDecoder() = default;
