@@ -18,19 +18,8 @@ namespace {
 
 constexpr std::int64_t kPoll_ns = 2'000'000;  // between two reads of a camera, which do not block
 
-class Options {
- public:
-  ~Options() { libav::av_dict_free(&entries_); }
-  Options() = default;
-  Options(const Options&) = delete;
-  Options& operator=(const Options&) = delete;
-
-  void set(const char* key, const char* value) { libav::av_dict_set(&entries_, key, value, 0); }
-  AVDictionary** entries() { return &entries_; }
-
- private:
-  AVDictionary* entries_ = nullptr;
-};
+/// Keys and values.
+using Options = std::vector<std::pair<const char*, std::string>>;
 
 /// An input of libavformat, decoded image by image.
 class LiveInput {
@@ -38,14 +27,17 @@ class LiveInput {
   LiveInput(std::string address, const SourceContext& context)
       : address_(std::move(address)), context_(context) {}
 
-  void open(const char* url, const AVInputFormat* format, int flags, Options& options) {
+  void open(const char* url, const AVInputFormat* format, int flags, const Options& options) {
     libav::limit_memory();
     AVFormatContext* opened = libav::avformat_alloc_context();
     opened->flags |= flags;
     opened->interrupt_callback = {
         [](void* self) { return static_cast<LiveInput*>(self)->is_interrupted() ? 1 : 0; }, this};
-    const int error = libav::avformat_open_input(
-        &opened, url, const_cast<AVInputFormat*>(format), options.entries());
+    AVDictionary* entries = nullptr;
+    for (const auto& [key, value] : options) libav::av_dict_set(&entries, key, value.c_str(), 0);
+    const int error =
+        libav::avformat_open_input(&opened, url, const_cast<AVInputFormat*>(format), &entries);
+    libav::av_dict_free(&entries);
     if (error < 0) fail(error);
     format_.reset(opened);
   }
@@ -191,8 +183,8 @@ OpenSource open_camera(const SourceAddress& address, const SourceContext& contex
   if (format == nullptr) refuse(address.text, "FFmpeg's libavdevice has no V4L2");
   const auto input = std::make_shared<LiveInput>(address.text, context);
   Options options;
-  if (!choice.size.empty()) options.set("video_size", choice.size.c_str());
-  if (!choice.rate_hz.empty()) options.set("framerate", choice.rate_hz.c_str());
+  if (!choice.size.empty()) options.emplace_back("video_size", choice.size);
+  if (!choice.rate_hz.empty()) options.emplace_back("framerate", choice.rate_hz);
   input->open(file.c_str(), format, AVFMT_FLAG_NONBLOCK, options);
   input->find_video(true);
   const auto cameras = list_cameras();
@@ -203,11 +195,9 @@ OpenSource open_camera(const SourceAddress& address, const SourceContext& contex
 OpenSource open_stream(const SourceAddress& address, const SourceContext& context) {
   const SourceRow& row = source_row(address.text);
   if (row.prefix == "udp://") check_udp_port(address.text);
-  Options options;
-  options.set("format_whitelist", row.formats);
-  options.set("protocol_whitelist", row.protocols);
-  if (row.prefix == "udp://") options.set("overrun_nonfatal", "1");
-  if (row.prefix == "rtsp://") options.set("allowed_media_types", "video");
+  Options options = {{"format_whitelist", row.formats}, {"protocol_whitelist", row.protocols}};
+  if (row.prefix == "udp://") options.emplace_back("overrun_nonfatal", "1");
+  if (row.prefix == "rtsp://") options.emplace_back("allowed_media_types", "video");
   const auto input = std::make_shared<LiveInput>(address.text, context);
   input->open(address.text.c_str(), nullptr, 0, options);
   input->find_video(false);
