@@ -202,6 +202,11 @@ std::optional<fs::path> if_file(const fs::path& path) {
   return is_file(path) ? std::optional(path) : std::nullopt;
 }
 
+std::optional<fs::path> first_file(std::initializer_list<fs::path> paths) {
+  const auto* file = std::ranges::find_if(paths, is_file);
+  return file == paths.end() ? std::nullopt : std::optional(*file);
+}
+
 fs::path folder_of(const fs::path& file) {
   return file.has_parent_path() ? file.parent_path() : fs::path(".");
 }

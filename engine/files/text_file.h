@@ -6,6 +6,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <initializer_list>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -65,6 +66,8 @@ bool is_file(const fs::path& path);
 bool is_folder(const fs::path& path);
 
 std::optional<fs::path> if_file(const fs::path& path);
+/// Returns the first path that is a file.
+std::optional<fs::path> first_file(std::initializer_list<fs::path> paths);
 
 /// Returns the folder of a file, "." if its path has none.
 fs::path folder_of(const fs::path& file);

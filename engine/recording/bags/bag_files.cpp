@@ -29,12 +29,6 @@ std::optional<std::vector<fs::path>> listed_files(const fs::path& folder) {
   return files;
 }
 
-/// Returns the listed file or the one that was compressed.
-std::optional<fs::path> stored_as(const fs::path& listed) {
-  const auto compressed = if_file(fs::path(listed.string() + ".zstd"));
-  return is_file(listed) ? std::optional(listed) : compressed;
-}
-
 /// A part's name: rosbag's may have a time of recording before the number.
 struct PartName {
   std::string recording;
@@ -70,7 +64,7 @@ bool sort_parts(std::vector<fs::path>& files) {
 BagFiles files_in_folder(const fs::path& folder) {
   BagFiles found;
   for (const fs::path& listed : listed_files(folder).value_or(std::vector<fs::path>())) {
-    if (const auto file = stored_as(listed))
+    if (const auto file = first_file({listed, listed.string() + ".zstd"}))
       found.files.push_back(*file);
     else
       found.notes.push_back(listed.filename().string() + " is missing, metadata.yaml lists it");

@@ -122,12 +122,9 @@ CalibrationSearch calibration_of(const fs::path& folder) {
   const fs::path outer = folder.filename() == "mav0" ? folder.parent_path() : folder;
   CalibrationSearch search = search_calibration({folder / "cam0", folder, outer, outer / "dso"});
   const fs::path cam = folder / "cam0" / "sensor.yaml";
-  for (const fs::path& file :
-       {cam, folder / "camera.yaml", outer / "camera.yaml", outer / "dso" / "camchain.yaml"})
-    if (is_file(file)) {
-      search.file = file;
-      break;
-    }
+  if (const auto usual = first_file(
+          {cam, folder / "camera.yaml", outer / "camera.yaml", outer / "dso" / "camchain.yaml"}))
+    search.file = usual;
   if (!search.file) search.file = cam;  // reading it reports that it is missing
   std::erase_if(search.unused, [&](const FoundFile& one) { return one.file == *search.file; });
   return search;

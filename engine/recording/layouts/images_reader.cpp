@@ -96,10 +96,10 @@ std::vector<std::int64_t> frame_times(Recording& recording,
 }
 
 std::optional<Gyroscope> plain_gyroscope(const fs::path& folder) {
-  for (const char* name : {"gyro.csv", "gyro_accel.csv", "imu.csv"})
-    if (const auto file = if_file(folder / name))
-      return read_gyroscope(*file, TimeUnit::by_sample_rate);
-  return std::nullopt;
+  const auto file =
+      first_file({folder / "gyro.csv", folder / "gyro_accel.csv", folder / "imu.csv"});
+  if (!file) return std::nullopt;
+  return read_gyroscope(*file, TimeUnit::by_sample_rate);
 }
 
 void add_gyroscope(Recording& recording,

@@ -26,8 +26,7 @@ struct Found {
 
 std::optional<fs::path> tracks_of(const Found& found, const OpenOptions& options) {
   if (options.tracks) return options.tracks;
-  auto tracks = if_file(found.folder / "tracks.csv");
-  if (!tracks) tracks = if_file(found.path / "tracks.csv");
+  auto tracks = first_file({found.folder / "tracks.csv", found.path / "tracks.csv"});
   const Layout& layout = *found.layout;
   const bool lacks_images =
       layout.tracks_alone || (tracks && layout.lacks_images && layout.lacks_images(found.path));
@@ -105,8 +104,7 @@ Recording read(const Found& found, const OpenOptions& options) {
 
 void add_sidecars(Recording& recording, const Found& found) {
   const auto beside = [&](const char* name) {
-    auto file = if_file(found.folder / name);
-    return file ? file : if_file(found.path / name);
+    return first_file({found.folder / name, found.path / name});
   };
   if (const auto file = beside("board.yaml")) recording.board = read_board(*file);
   if (const auto file = beside("plane.yaml")) recording.plane = read_plane(*file);

@@ -86,13 +86,6 @@ void add_odometry(Log& log, const fs::path& file) {
     log.true_poses.push_back(csv_pose(table, row, 2, {8, 5, 6, 7}));
 }
 
-/// Returns the first of these files in the folder.
-std::optional<fs::path> first_of(const fs::path& folder, std::initializer_list<const char*> names) {
-  for (const char* name : names)
-    if (auto file = if_file(folder / name)) return file;
-  return std::nullopt;
-}
-
 /// Reads the times and, except for ADVIO's, the first frame's lens: time, number, fx, fy, cx, cy.
 void add_frames(Log& log, const fs::path& file) {
   constexpr double kMostChange = 5e-3;
@@ -163,8 +156,8 @@ void add_phone_poses(Log& log, const fs::path& folder) {
   if (const auto arkit = if_file(folder / "ARposes.txt"))
     return add_poses(log, *arkit, Eigen::Vector3d(1, -1, -1).asDiagonal().toDenseMatrix());
   const fs::path above = fs::absolute(folder).lexically_normal() / ".." / "ground-truth";
-  for (const fs::path& file : {above / "pose.csv", above / "poses.csv", folder / "arkit.csv"})
-    if (is_file(file)) return add_poses(log, file.lexically_normal(), rear_camera());
+  if (const auto file = first_file({above / "pose.csv", above / "poses.csv", folder / "arkit.csv"}))
+    add_poses(log, file->lexically_normal(), rear_camera());
 }
 
 /// Adds specific forces in m/s^2, or accelerations as iOS has them: in g, downward at rest. Ignores
@@ -286,12 +279,13 @@ Log read_sensor_logger(const fs::path& file) {
 
 Log read_ios_logger(const fs::path& folder) {
   Log log;
-  const auto frames = first_of(folder, {"Frames.txt", "frames.csv"});
+  const auto frames = first_file({folder / "Frames.txt", folder / "frames.csv"});
   if (!frames) refuse(folder, "found no Frames.txt or frames.csv");
   add_frames(log, *frames);
   log.file = *frames;
   add_phone_poses(log, folder);
-  const auto rates = first_of(folder, {"Gyro.txt", "gyro.csv", "gyroscope.csv"});
+  const auto rates =
+      first_file({folder / "Gyro.txt", folder / "gyro.csv", folder / "gyroscope.csv"});
   if (!rates) return log;
   CsvTable table = phone_samples(*rates);
   Gyroscope& gyroscope = log.gyroscope.emplace();
@@ -300,7 +294,7 @@ Log read_ios_logger(const fs::path& folder) {
   const auto times_ns = csv_time_stamps(table, TimeUnit::seconds);
   for (std::size_t i = 0; i < table.rows.size(); ++i)
     add_sample(gyroscope, table, table.rows[i], times_ns[i], csv_vector(table, table.rows[i], 1));
-  if (const auto file = first_of(folder, {"Accel.txt", "accelerometer.csv"})) {
+  if (const auto file = first_file({folder / "Accel.txt", folder / "accelerometer.csv"})) {
     const CsvTable forces = phone_samples(*file);
     add_forces(gyroscope, forces, 1, csv_time_stamps(forces, TimeUnit::seconds));
   }
