@@ -25,6 +25,7 @@ using Header = std::optional<ImageHeader>;
 constexpr const char* kUnknownFormat = "cannot decode: not an image of a supported format";
 constexpr Bytes kPngSignature = "\x89PNG\r\n\x1A\n";
 constexpr Bytes kJpegSignature = "\xFF\xD8\xFF";
+constexpr Bytes kDigits = "0123456789";
 
 /// cv::imdecode(InputArray bytes, int flags)
 const LateFunction<cv::Mat(cv::InputArray, int), find_in_imgcodecs> opencv_imdecode(
@@ -256,33 +257,28 @@ cv::Mat to_8_bits(const cv::Mat& image, int sampled_bits) {
 }
 
 bool has_number(const fs::path& file) {
-  return file.stem().string().find_first_of("0123456789") != std::string::npos;
+  return file.stem().string().find_first_of(kDigits) != std::string::npos;
 }
 
-bool natural_less(const std::string& a, const std::string& b) {
-  std::size_t i = 0, j = 0;
-  const auto digits_at = [](const std::string& text, std::size_t from) {
-    std::size_t end = from;
-    while (end < text.size() && is_digit(text, end)) ++end;
-    return text.substr(from, end - from);
-  };
-  while (i < a.size() && j < b.size()) {
-    std::string number_a = digits_at(a, i);
-    std::string number_b = digits_at(b, j);
-    if (number_a.empty() || number_b.empty()) {
-      if (a[i] != b[j]) return a[i] < b[j];
-      ++i, ++j;
+/// Returns a key that sorts files by the numbers in their names, 2.png before 10.png, then by their
+/// names.
+std::pair<std::vector<int>, std::string> natural_key(const fs::path& file) {
+  std::string name = file.filename().string();
+  std::vector<int> key;
+  key.reserve(name.size() + 2);
+  for (std::size_t i = 0; i < name.size();) {
+    const std::size_t end = std::min(name.find_first_not_of(kDigits, i), name.size());
+    if (end == i) {
+      key.push_back(name[i++]);
       continue;
     }
-    i += number_a.size();
-    j += number_b.size();
-    number_a.erase(0, std::min(number_a.find_first_not_of('0'), number_a.size()));
-    number_b.erase(0, std::min(number_b.find_first_not_of('0'), number_b.size()));
-    if (number_a.size() != number_b.size()) return number_a.size() < number_b.size();
-    if (number_a != number_b) return number_a < number_b;
+    const Bytes digits = Bytes(name).substr(i, end - i);
+    const Bytes number = digits.substr(std::min(digits.find_first_not_of('0'), digits.size()));
+    key.insert(key.end(), {'0', static_cast<int>(number.size())});  // longer numbers are larger
+    key.insert(key.end(), number.begin(), number.end());
+    i = end;
   }
-  if (i < a.size() || j < b.size()) return i == a.size();
-  return a < b;
+  return {std::move(key), std::move(name)};
 }
 
 }  // namespace
@@ -365,7 +361,7 @@ void add_image_files(Recording& recording,
 std::vector<fs::path> numbered_images(const fs::path& folder) {
   std::vector<fs::path> files = files_of_kind(folder, FileKind::image);
   std::erase_if(files, std::not_fn(has_number));
-  std::ranges::sort(files, natural_less, [](const auto& file) { return file.filename().string(); });
+  std::ranges::sort(files, {}, natural_key);
   return files;
 }
 
@@ -381,8 +377,7 @@ std::vector<FoundFile> unreadable_images(const fs::path& folder) {
                                                                            : "not a file";
     found.push_back({file, "", reason});
   }
-  std::ranges::sort(
-      found, natural_less, [](const auto& one) { return one.file.filename().string(); });
+  std::ranges::sort(found, {}, [](const FoundFile& one) { return natural_key(one.file); });
   return found;
 }
 
