@@ -268,17 +268,6 @@ void TopicList::add_message(std::int64_t id,
   spend_messages(bag_.file, file_bytes_);
   const std::int64_t time = std::clamp(recorded_ns, std::int64_t{0}, std::int64_t{1} << 61);
   bag_.messages.push_back({found->second, time, chunk, place});
-  ++bag_.topics[found->second].messages;
-}
-
-void TopicList::drop_last() {
-  --bag_.topics[bag_.messages.back().topic].messages;
-  bag_.messages.pop_back();
-}
-
-void TopicList::clear_messages() {
-  bag_.messages.clear();
-  for (BagTopic& topic : bag_.topics) topic.messages = 0;
 }
 
 void TopicList::finish() {
@@ -292,7 +281,10 @@ void TopicList::finish() {
     sorted.push_back(std::move(bag_.topics[old]));
   }
   bag_.topics = std::move(sorted);
-  for (BagMessage& message : bag_.messages) message.topic = new_place[message.topic];
+  for (BagMessage& message : bag_.messages) {
+    message.topic = new_place[message.topic];
+    ++bag_.topics[message.topic].messages;
+  }
   std::ranges::sort(bag_.messages, {}, [](const BagMessage& message) {
     return std::pair(message.chunk, message.place);
   });

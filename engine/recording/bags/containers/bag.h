@@ -75,9 +75,8 @@ class TopicList {
                    std::int64_t recorded_ns,
                    std::uint32_t chunk,
                    std::uint64_t place);
-  void drop_last();
-  void clear_messages();
-  /// Sorts the bag's topics by name and its messages in the order of the file; the last call.
+  /// Sorts the bag's topics by name and its messages in the order of the file, and counts those of
+  /// each topic; the last call.
   void finish();
 
  private:

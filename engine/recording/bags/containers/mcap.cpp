@@ -257,7 +257,7 @@ Bag open_mcap(const std::shared_ptr<const FileBytes>& file, const ReadProgress& 
   using namespace mcap;
   Opening opening(file, progress);
   if (!read_index(opening)) {
-    opening.topics.clear_messages();
+    opening.bag.messages.clear();
     scan(opening);
   }
   return opening.finish(find_data);

@@ -212,7 +212,7 @@ Bag open_ros1_bag(const std::shared_ptr<const FileBytes>& file, const ReadProgre
   if (!header || !header->is(Ros1Op::bag_header))
     refuse(opening.bag.file, "found no header of a ROS 1 bag at byte {}", kRos1Magic.size());
   if (!read_index(opening, *header)) {
-    opening.topics.clear_messages();
+    opening.bag.messages.clear();
     opening.chunks->clear();
     scan(opening, header->end());
   }

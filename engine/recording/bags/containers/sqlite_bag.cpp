@@ -179,7 +179,8 @@ Bag open_sqlite_bag(const fs::path& file, const fs::path& content, const ReadPro
   const auto rows = std::make_shared<RowReader>(file, database);
   if (!add_messages(file, content, database, topics, progress)) {
     // The last row may be partly missing.
-    while (!bag.messages.empty() && !can_be_read(*rows, bag.messages.back())) topics.drop_last();
+    while (!bag.messages.empty() && !can_be_read(*rows, bag.messages.back()))
+      bag.messages.pop_back();
     bag.notes.push_back("the bag is truncated or broken: could read only " +
                         counted(bag.messages.size(), "message"));
   }
