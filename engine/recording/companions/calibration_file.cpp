@@ -128,8 +128,7 @@ const KalibrModel& kalibr_model(const YamlEntry& root) {
   const auto entry = find(root, "camera_model");
   if (!entry) return kKalibrModels[0];
   const std::string name = lower_case(text(*entry, "pinhole"));
-  const auto model =
-      std::ranges::find_if(kKalibrModels, [&](const auto& one) { return one.name == name; });
+  const auto model = std::ranges::find(kKalibrModels, name, &KalibrModel::name);
   if (model == kKalibrModels.end())
     yaml_fail(*entry, fmt::format("\"{}\"", name), "pinhole, omni, eucm or ds");
   return *model;

@@ -38,17 +38,13 @@ YamlEntry at_path(const YamlEntry& root, const std::string& path, const std::str
   yaml_fail(below(root, key, YAML::Node()), "no value", expected);
 }
 
-double number_at_path(const YamlEntry& root, const std::string& path) {
-  return number(at_path(root, path, kNumber));
-}
-
 /// Returns the numbers of several keys, which `prefix` precedes: "fx fy cx cy".
 std::vector<double> numbers_at(const YamlEntry& root,
                                const std::string& prefix,
                                const std::string& keys) {
   std::vector<double> values;
   for (const std::string& key : split(keys, ' '))
-    values.push_back(number_at_path(root, prefix + key));
+    values.push_back(number(at_path(root, prefix + key, kNumber)));
   return values;
 }
 
@@ -88,8 +84,7 @@ struct NamedLens {
 NamedLens lens_named(std::span<const NamedLens> lenses,
                      const YamlEntry& entry,
                      const std::string& name) {
-  const auto lens =
-      std::ranges::find_if(lenses, [&](const NamedLens& one) { return one.name == name; });
+  const auto lens = std::ranges::find(lenses, name, &NamedLens::name);
   if (lens != lenses.end()) return *lens;
   std::string names;
   for (const NamedLens& one : lenses)

@@ -39,12 +39,6 @@ std::size_t parameter_count(const ColmapModel& model) {
   return static_cast<std::size_t>(model.focal_lengths + 2 + model.coefficients);
 }
 
-const ColmapModel* model_named(std::string_view name) {
-  const auto found =
-      std::ranges::find_if(kColmapModels, [&](const auto& one) { return one.name == name; });
-  return found == kColmapModels.end() ? nullptr : &*found;
-}
-
 /// Places in messages; a table has no keys.
 YamlEntry table_place(const fs::path& file) { return {file, "", YAML::Node()}; }
 
@@ -117,8 +111,8 @@ Calibration read_colmap_text(const fs::path& file, std::string_view bytes) {
   std::string_view line = lines.front();
   take_word(line);
   const std::string name(take_word(line));
-  const ColmapModel* model = model_named(name);
-  if (model == nullptr)
+  const auto model = std::ranges::find(kColmapModels, name, &ColmapModel::name);
+  if (model == kColmapModels.end())
     fail_at(file, "the camera model " + name, "one that COLMAP documents up to THIN_PRISM_FISHEYE");
   std::vector<double> values = numbers_in(line);
   if (values.size() != 2 + parameter_count(*model))

@@ -112,13 +112,6 @@ std::string numbers_of(std::span<const FrameFault> faults, FrameFault fault, int
   return fmt::format("{} ({}{})", count, fmt::join(numbers, ", "), count > kShown ? ", ..." : "");
 }
 
-std::string note_of(std::span<const FrameFault> faults) {
-  return fmt::format("{} of {} frames are left out: {}",
-                     std::ssize(faults) - std::ranges::count(faults, FrameFault::none),
-                     faults.size(),
-                     text_of(faults));
-}
-
 template <class Value>
 void keep_only(std::span<const int> kept, std::vector<Value>& values, std::size_t all) {
   if (values.size() != all) return;
@@ -183,7 +176,8 @@ void leave_out_faulty_frames(Recording& recording, const SearchedFrames& searche
   for (std::size_t i = 0; i < all; ++i)
     if (faults[i] == FrameFault::none) kept.push_back(static_cast<int>(i));
   if (kept.size() == all || kept.size() < 2) return;
-  recording.notes.push_back(note_of(faults));
+  recording.notes.push_back(
+      fmt::format("{} of {} frames are left out: {}", all - kept.size(), all, text_of(faults)));
   keep_only(kept, recording.timestamps_ns, all);
   keep_only(kept, recording.image_files, all);
   if (recording.truth) keep_only(kept, recording.truth->poses, all);
