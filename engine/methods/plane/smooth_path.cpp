@@ -5,10 +5,12 @@
 #include "engine/geometry/decompositions.h"
 #include "engine/geometry/pose.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <utility>
 
+#include <Eigen/Cholesky>
 #include <Eigen/LU>
 
 namespace gpo {
@@ -20,8 +22,7 @@ using Eigen::MatrixXd;
 using Eigen::Vector3d;
 using Eigen::VectorXd;
 
-constexpr Index kOrder = 3;  // order of the penalized differences: quadratic motion is smooth
-constexpr Index kStencil = 5;
+constexpr Index kOrder = 3;  // derivative that the smoothing penalizes
 
 /// Returns the weights of the values at `t` in the `order`-th derivative at `at` of the polynomial
 /// through them.
@@ -35,51 +36,124 @@ VectorXd derivative_weights(const VectorXd& t, double at, Index order) {
   return powers.partialPivLu().solve(right) / std::pow(unit, order);
 }
 
-/// Returns the matrix that maps values at the times to derivatives there.
-MatrixXd differentiation(const VectorXd& t, Index order) {
-  const Index n = t.size();
-  const Index width = std::min(kStencil, n);
-  MatrixXd D = MatrixXd::Zero(n, n);
-  for (Index i = 0; i < n; ++i) {
-    const Index first = std::clamp(i - width / 2, Index{0}, n - width);
-    D.row(i).segment(first, width) =
-        derivative_weights(t.segment(first, width), t(i), order).transpose();
-  }
-  return D;
-}
-
-/// Returns the sum of squared third derivatives between the times as a quadratic form.
-MatrixXd roughness_of(const VectorXd& t) {
+/// Returns the third differences, the means of the third derivative over four times each, weighted
+/// by the quadratic B-splines of `b_spline`.
+MatrixXd third_differences(const VectorXd& t) {
   const Index n = t.size();
   MatrixXd D = MatrixXd::Zero(n - kOrder, n);
   for (Index k = 0; k < n - kOrder; ++k) {
     const VectorXd times = t.segment(k, kOrder + 1);
     D.row(k).segment(k, kOrder + 1) = derivative_weights(times, times.mean(), kOrder).transpose();
   }
-  return D.transpose() * D;
+  return D;
 }
 
-/// Returns the most likely shrinkage of the values along each eigenvector of the roughness, whose
-/// squares are given: their prior variance is proportional to 1 / `roughness`.
-VectorXd best_shrinkage(const VectorXd& roughness, const VectorXd& squares, double variance) {
+double square_after(double t, double u) { return t > u ? (t - u) * (t - u) : 0; }
+
+/// Returns the B-spline over t_k to t_k+3, of integral 1, at time u.
+double b_spline(const VectorXd& t, Index k, double u) {
+  double sum = 0;
+  for (Index j = k; j <= k + kOrder; ++j) {
+    double product = 1;
+    for (Index l = k; l <= k + kOrder; ++l)
+      if (l != j) product *= t(j) - t(l);
+    sum += kOrder * square_after(t(j), u) / product;
+  }
+  return sum;
+}
+
+/// Calls `add(u, weight)` for the nodes of Gauss' rule, exact to degree 5, in [t_i, t_i+1].
+template <typename Add>
+void integrate(const VectorXd& t, Index i, const Add& add) {
+  constexpr double kNode = 0.7745966692414834;  // root of 3/5
+  const double middle = 0.5 * (t(i) + t(i + 1)), half = 0.5 * (t(i + 1) - t(i));
+  add(middle - half * kNode, half * 5 / 9);
+  add(middle, half * 8 / 9);
+  add(middle + half * kNode, half * 5 / 9);
+}
+
+/// Inner products of the B-splines.
+MatrixXd gram_matrix(const VectorXd& t) {
+  const Index count = t.size() - kOrder;
+  MatrixXd gram = MatrixXd::Zero(count, count);
+  for (Index i = 0; i + 1 < t.size(); ++i) {
+    const Index first = std::max(Index{0}, i + 1 - kOrder), last = std::min(i, count - 1);
+    integrate(t, i, [&](double u, double weight) {
+      for (Index k = first; k <= last; ++k)
+        for (Index l = first; l <= last; ++l)
+          gram(k, l) += weight * b_spline(t, k, u) * b_spline(t, l, u);
+    });
+  }
+  return gram;
+}
+
+/// Maps values at the times to derivatives there, of the natural quintic spline through them: the
+/// mean given the values if the third derivative is white noise.
+struct Differentiation {
+  MatrixXd map;
+  VectorXd variance;  ///< one per derivative, given the values, for white noise of intensity 1
+};
+
+/// Peano: the error of the derivative of the parabola through three values is the integral of the
+/// third derivative, times the error for (t - u)_+^2 / 2.
+Differentiation differentiation(const VectorXd& t,
+                                Index order,
+                                const MatrixXd& differences,
+                                const Eigen::LLT<MatrixXd>& gram) {
+  const Index n = t.size(), count = n - kOrder;
+  Differentiation result{MatrixXd::Zero(n, n), VectorXd::Zero(n)};
+  MatrixXd products = MatrixXd::Zero(count, n);
+  for (Index i = 0; i < n; ++i) {
+    const Index from = std::clamp(i - 1, Index{0}, n - kOrder);
+    const VectorXd d = derivative_weights(t.segment(from, kOrder), t(i), order);
+    result.map.row(i).segment(from, kOrder) = d.transpose();
+    for (Index interval = from; interval < from + 2; ++interval)
+      integrate(t, interval, [&](double u, double weight) {
+        double kernel = t(i) > u ? (order == 1 ? t(i) - u : 1) : 0;
+        for (Index j = 0; j < kOrder; ++j) kernel -= 0.5 * d(j) * square_after(t(from + j), u);
+        result.variance(i) += weight * kernel * kernel;
+        for (Index k = std::max(Index{0}, interval + 1 - kOrder);
+             k <= std::min(interval, count - 1);
+             ++k)
+          products(k, i) += weight * kernel * b_spline(t, k, u);
+      });
+  }
+  const MatrixXd solved = gram.solve(products);
+  result.map += solved.transpose() * differences;
+  result.variance -= (solved.array() * products.array()).colwise().sum().matrix().transpose();
+  result.variance = result.variance.cwiseMax(0);
+  return result;
+}
+
+/// White noise of the third derivative, before the values are seen.
+struct Roughness {
+  double intensity = 0;
+  VectorXd shrinkage;  ///< one factor per eigenvector
+};
+
+/// Returns the most likely roughness; the values have these squares along the eigenvectors.
+Roughness likely_roughness(const VectorXd& roughness, const VectorXd& squares, double variance) {
   constexpr int kSteps = 60;
   constexpr double kRatio = 3;
   const Index n = roughness.size();
   const Eigen::ArrayXd rough = roughness.tail(n - kOrder), square = squares.tail(n - kOrder);
+  Roughness best{0, VectorXd::Ones(n)};
+  if (!(variance > 0)) {
+    best.intensity = (square * rough).mean();
+    return best;
+  }
   Eigen::ArrayXd all(n - kOrder);
-  double best = 0;
   double least = std::numeric_limits<double>::infinity();
-  double unit = 1e-6 * variance * roughness(n - 1);
-  for (int k = 0; k < kSteps; ++k, unit *= kRatio) {
-    all = unit / rough + variance;
+  double intensity = 1e-6 * variance * roughness(n - 1);
+  for (int k = 0; k < kSteps; ++k, intensity *= kRatio) {
+    all = intensity / rough + variance;
     const double minus_log = (all.log() + square / all).sum();
     if (minus_log >= least) continue;
     least = minus_log;
-    best = unit;
+    best.intensity = intensity;
   }
-  VectorXd shrinkage = VectorXd::Ones(n);
-  shrinkage.tail(n - kOrder) = best / (best + variance * rough);
-  return shrinkage;
+  best.shrinkage.tail(n - kOrder) = best.intensity / (best.intensity + variance * rough);
+  return best;
 }
 
 }  // namespace
@@ -88,9 +162,13 @@ PathTimes path_times(const VectorXd& times_s) {
   const Index n = times_s.size();
   PathTimes times{.duration_s = n > 0 ? times_s(n - 1) - times_s(0) : 0};
   if (n <= kOrder + 1) return times;
-  times.first = differentiation(times_s, 1);
-  times.second = differentiation(times_s, 2);
-  auto [roughness, vectors] = symmetric_eigen(roughness_of(times_s));
+  const MatrixXd differences = third_differences(times_s);
+  const Eigen::LLT<MatrixXd> gram(gram_matrix(times_s));
+  auto first = differentiation(times_s, 1, differences, gram);
+  times.first = std::move(first.map);
+  times.first_variance = std::move(first.variance);
+  times.second = differentiation(times_s, 2, differences, gram).map;
+  auto [roughness, vectors] = symmetric_eigen(differences.transpose() * gram.solve(differences));
   times.roughness = std::move(roughness);
   times.vectors = std::move(vectors);
   return times;
@@ -115,11 +193,13 @@ Derivatives smooth_derivatives(const PathTimes& times,
   const MatrixXd first_along = times.first * times.vectors;
   MatrixXd smooth = values, sigma = none;
   for (Index c = 0; c < values.cols(); ++c) {
-    if (!(noise(c) > 0)) continue;
     const double variance = noise(c) * noise(c);
-    const VectorXd shrinkage = best_shrinkage(times.roughness, along.col(c).cwiseAbs2(), variance);
-    smooth.col(c) = times.vectors * shrinkage.cwiseProduct(along.col(c));
-    sigma.col(c) = (variance * (first_along.cwiseAbs2() * shrinkage)).cwiseSqrt();
+    const auto [intensity, shrinkage] =
+        likely_roughness(times.roughness, along.col(c).cwiseAbs2(), variance);
+    if (variance > 0) smooth.col(c) = times.vectors * shrinkage.cwiseProduct(along.col(c));
+    sigma.col(c) =
+        (variance * (first_along.cwiseAbs2() * shrinkage) + intensity * times.first_variance)
+            .cwiseSqrt();
   }
   return {times.first * smooth, times.second * smooth, sigma};
 }

@@ -41,8 +41,10 @@ struct PathNoise {
 /// Inputs of the smoothing of a path besides its values.
 struct PathTimes {
   double duration_s = 0;
-  Eigen::MatrixXd first = {},
-                  second = {};     ///< map values to derivatives; empty for up to four times
+  Eigen::MatrixXd first = {}, second = {};  ///< map values to derivatives; empty: up to four times
+  /// Variances of the first derivatives given exact values, if the third derivative is white noise
+  /// of unit intensity.
+  Eigen::VectorXd first_variance = {};
   Eigen::VectorXd roughness = {};  ///< eigenvalues of the penalty, ascending
   Eigen::MatrixXd vectors = {};    ///< its eigenvectors
 };
@@ -64,8 +66,9 @@ struct Derivatives {
 };
 
 /// Returns the derivatives of a smooth path through each column of `values` (rows: times in
-/// seconds, ascending), whose noise has the standard deviations `noise`: penalized third
-/// differences (Whittaker 1923), whose weight is the most likely one for each column.
+/// seconds, ascending), whose noise has the standard deviations `noise`: a smoothing spline of
+/// degree 5. Its third derivative is white noise of an unknown intensity (Wahba 1978), the most
+/// likely one for each column.
 Derivatives smooth_derivatives(const PathTimes& times,
                                const Eigen::MatrixXd& values,
                                const Eigen::VectorXd& noise);

@@ -10,6 +10,7 @@
 #include <cmath>
 #include <functional>
 #include <iterator>
+#include <numbers>
 #include <random>
 
 #include <Eigen/Cholesky>
@@ -274,6 +275,48 @@ TEST(SmoothPath, ReducesTheNoiseOfVelocities) {
   }
   EXPECT_LT(smooth, by_differences / 20);
   EXPECT_NEAR(smooth / claimed, 1.2, 0.7);
+}
+
+/// Paths whose third derivative is white noise, between the times as well.
+TEST(SmoothPath, ClaimsTheErrorsOfVelocitiesOfExactPoses) {
+  constexpr int kFrames = 20, kSteps = 60;  // per frame
+  std::mt19937_64 random(1);
+  std::normal_distribution<double> normal;
+  double interior = 0, ends = 0;
+  for (int path = 0; path < 200; ++path) {
+    const VectorXd t = VectorXd::LinSpaced(kFrames, 0, (kFrames - 1) / 30.0);
+    const double step_s = 1.0 / (30 * kSteps);
+    Eigen::MatrixXd values(kFrames, 1);
+    VectorXd velocities(kFrames);
+    double x = 0, v = 0, a = 0;
+    for (int k = 0; k <= (kFrames - 1) * kSteps; ++k) {
+      if (k % kSteps == 0) {
+        values(k / kSteps) = x;
+        velocities(k / kSteps) = v;
+      }
+      x += step_s * v + 0.5 * step_s * step_s * a;
+      v += step_s * a;
+      a += std::sqrt(step_s) * normal(random);
+    }
+    const Derivatives slopes = smooth_derivatives(path_times(t), values, VectorXd::Zero(1));
+    for (const int i : {0, kFrames - 1})
+      ends += std::pow((slopes.first(i) - velocities(i)) / slopes.sigma(i), 2) / 400;
+    for (int i = 6; i < 14; ++i)
+      interior += std::pow((slopes.first(i) - velocities(i)) / slopes.sigma(i), 2) / 1600;
+  }
+  EXPECT_NEAR(interior, 1.1, 0.3);
+  EXPECT_NEAR(ends, 1.1, 0.3);
+}
+
+/// A hand that trembles at 6 Hz, in images at 20 Hz: the parabola through five values is wrong by
+/// 20 % of the velocity.
+TEST(SmoothPath, FollowsTremor) {
+  const VectorXd t = VectorXd::LinSpaced(30, 0, 29 / 20.0);
+  const double omega = 2 * std::numbers::pi * 6;
+  const Eigen::MatrixXd values = (omega * t).array().sin().matrix();
+  const Derivatives slopes = smooth_derivatives(path_times(t), values, VectorXd::Zero(1));
+  for (int i = 5; i < 25; ++i)
+    EXPECT_NEAR(slopes.first(i), omega * std::cos(omega * t(i)), 0.05 * omega) << i;
 }
 
 }  // namespace
