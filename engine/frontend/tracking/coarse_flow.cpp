@@ -1,6 +1,5 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/base/processor.h"
 #include "engine/frontend/tracking/patch.h"
 
 #include <algorithm>
@@ -116,6 +115,12 @@ static_assert(kAtATime == kPatchKernelWidth);
   return normal;
 }
 
+GPO_AVX2_FMA Eigen::Matrix4d take_avx2_fma(const cv::Mat& image,
+                                           const cv::Point& middle,
+                                           Patch& patch) {
+  return take(image, middle, patch);
+}
+
 /// Returns the motion of the patch around `from_px` on a level, or `guess_px` if none fits better.
 Vector2d moved(const cv::Mat& from,
                const cv::Mat& to,
@@ -197,10 +202,6 @@ cv::Mat standardized(const cv::Mat& image) {
   return static_cast<double>(sum) / common.area();
 }
 
-double difference_baseline(const cv::Mat& from, const cv::Mat& to, const cv::Point& by) {
-  return difference(from, to, by);
-}
-
 GPO_AVX2_FMA double difference_avx2_fma(const cv::Mat& from,
                                         const cv::Mat& to,
                                         const cv::Point& by) {
@@ -213,11 +214,13 @@ Vector2d global_motion(const cv::Mat& from, const cv::Mat& to) {
   const cv::Mat b = standardized(to);
   const int farthest = std::min({kFarthest, from.cols / 3, from.rows / 3});
   cv::Point best(0, 0);
-  static const auto difference_at = has_avx2_fma() ? difference_avx2_fma : difference_baseline;
-  double least = difference_at(a, b, best);
+  const auto difference_at = [&, avx2_fma = has_avx2_fma()](const cv::Point& by) {
+    return avx2_fma ? difference_avx2_fma(a, b, by) : difference(a, b, by);
+  };
+  double least = difference_at(best);
   for (int v = -farthest; v <= farthest; ++v) {
     for (int u = -farthest; u <= farthest; ++u) {
-      const double now = difference_at(a, b, {u, v});
+      const double now = difference_at({u, v});
       if (now < least) {
         least = now;
         best = {u, v};
@@ -229,19 +232,11 @@ Vector2d global_motion(const cv::Mat& from, const cv::Mat& to) {
 
 }  // namespace
 
-Eigen::Matrix4d take_pixels_baseline(const cv::Mat& image, const cv::Point& middle, Patch& patch) {
-  return take(image, middle, patch);
-}
-
-GPO_AVX2_FMA Eigen::Matrix4d take_pixels_avx2_fma(const cv::Mat& image,
-                                                  const cv::Point& middle,
-                                                  Patch& patch) {
-  return take(image, middle, patch);
-}
-
-Eigen::Matrix4d take_pixels(const cv::Mat& image, const cv::Point& middle, Patch& patch) {
-  static const auto version = has_avx2_fma() ? take_pixels_avx2_fma : take_pixels_baseline;
-  return version(image, middle, patch);
+Eigen::Matrix4d take_pixels(const cv::Mat& image,
+                            const cv::Point& middle,
+                            Patch& patch,
+                            bool avx2_fma) {
+  return avx2_fma ? take_avx2_fma(image, middle, patch) : take(image, middle, patch);
 }
 
 Eigen::Matrix2Xd coarse_flow(const SmoothedPyramid& from,

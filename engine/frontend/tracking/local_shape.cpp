@@ -131,14 +131,6 @@ Places places_of(const Neighborhood& around,
     moments(i % 6, i / 6) += (sum[i][0] + sum[i][1]) + (sum[i][2] + sum[i][3]);
 }
 
-void add_moments_baseline(const LocalHomography& H,
-                          const Neighborhood& around,
-                          const Places& places,
-                          double agreement_px,
-                          Moments& moments) {
-  add_moments(H, around, places, agreement_px, moments);
-}
-
 GPO_AVX2_FMA void add_moments_avx2_fma(const LocalHomography& H,
                                        const Neighborhood& around,
                                        const Places& places,
@@ -227,13 +219,15 @@ Warp shaped(const Camera& camera,
     own += monomials(around.nodes_px.col(k) / kUnit_px) *
            Eigen::RowVector4d(1, p.x(), p.y(), p.squaredNorm());
   }
-  static const auto add = has_avx2_fma() ? add_moments_avx2_fma : add_moments_baseline;
   const Places places = places_of(around, undistorted_px, origin);
   LocalHomography H = fitted(own);
   for (int round = 0; round < kRounds; ++round) {
     const double agreement_px = (round == 0 ? kStart : kAgreement) * patch_unit(camera);
     Moments moments = own;
-    add(H, around, places, agreement_px, moments);
+    if (has_avx2_fma())
+      add_moments_avx2_fma(H, around, places, agreement_px, moments);
+    else
+      add_moments(H, around, places, agreement_px, moments);
     H = fitted(moments);
   }
   Nodes nodes;

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "engine/base/processor.h"
 #include "engine/window/tracks.h"
 
 #include <optional>
@@ -101,34 +102,22 @@ enum class MotionModel { shift, affine };
 PatchSums patch_sums(const cv::Mat& image,
                      const Patch& patch,
                      const Warp& warp,
-                     MotionModel unknown);
+                     MotionModel unknown,
+                     bool avx2_fma = has_avx2_fma());
 
 /// The same for a pure shift and a template without padding, whose last row and column may be
 /// missing; without the products of dx and dy.
-PatchSums shifted_sums(const cv::Mat& image, const Patch& patch, const Eigen::Vector2d& center);
+PatchSums shifted_sums(const cv::Mat& image,
+                       const Patch& patch,
+                       const Eigen::Vector2d& center,
+                       bool avx2_fma = has_avx2_fma());
 
 /// Copies the pixels around `middle` into a template like that of `shifted_sums`, all of them
 /// inside. Returns the sums of products of slopes along x and y, brightness and 1.
-Eigen::Matrix4d take_pixels(const cv::Mat& image, const cv::Point& middle, Patch& patch);
-
-// The versions that these choose from; those for AVX2 only if `has_avx2_fma`
-// (engine/base/processor.h).
-PatchSums patch_sums_baseline(const cv::Mat& image,
-                              const Patch& patch,
-                              const Warp& warp,
-                              MotionModel unknown);
-PatchSums shifted_sums_baseline(const cv::Mat& image,
-                                const Patch& patch,
-                                const Eigen::Vector2d& center);
-PatchSums patch_sums_avx2_fma(const cv::Mat& image,
-                              const Patch& patch,
-                              const Warp& warp,
-                              MotionModel unknown);
-PatchSums shifted_sums_avx2_fma(const cv::Mat& image,
-                                const Patch& patch,
-                                const Eigen::Vector2d& center);
-Eigen::Matrix4d take_pixels_baseline(const cv::Mat& image, const cv::Point& middle, Patch& patch);
-Eigen::Matrix4d take_pixels_avx2_fma(const cv::Mat& image, const cv::Point& middle, Patch& patch);
+Eigen::Matrix4d take_pixels(const cv::Mat& image,
+                            const cv::Point& middle,
+                            Patch& patch,
+                            bool avx2_fma = has_avx2_fma());
 
 struct SearchOptions {
   double farthest_px = 5;          ///< largest distance from the prediction [px]

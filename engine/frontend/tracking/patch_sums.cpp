@@ -1,6 +1,5 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/base/processor.h"
 #include "engine/frontend/tracking/patch.h"
 
 #include <algorithm>
@@ -283,15 +282,6 @@ GPO_AVX2_FMA PatchSums accumulate_rows(const cv::Mat& image, const Patch& patch,
   return sums;
 }
 
-}  // namespace
-
-PatchSums patch_sums_baseline(const cv::Mat& image,
-                              const Patch& patch,
-                              const Warp& warp,
-                              MotionModel /*unknown*/) {
-  return accumulate(image, patch, warp);
-}
-
 GPO_AVX2_FMA PatchSums patch_sums_avx2_fma(const cv::Mat& image,
                                            const Patch& patch,
                                            const Warp& warp,
@@ -304,29 +294,29 @@ GPO_AVX2_FMA PatchSums patch_sums_avx2_fma(const cv::Mat& image,
   return accumulate(image, patch, warp);
 }
 
-PatchSums patch_sums(const cv::Mat& image,
-                     const Patch& patch,
-                     const Warp& warp,
-                     MotionModel unknown) {
-  static const auto version = has_avx2_fma() ? patch_sums_avx2_fma : patch_sums_baseline;
-  return version(image, patch, warp, unknown);
-}
-
-PatchSums shifted_sums_baseline(const cv::Mat& image,
-                                const Patch& patch,
-                                const Eigen::Vector2d& center) {
-  return accumulate_shifted(image, patch, center);
-}
-
 GPO_AVX2_FMA PatchSums shifted_sums_avx2_fma(const cv::Mat& image,
                                              const Patch& patch,
                                              const Eigen::Vector2d& center) {
   return accumulate_shifted(image, patch, center);
 }
 
-PatchSums shifted_sums(const cv::Mat& image, const Patch& patch, const Eigen::Vector2d& center) {
-  static const auto version = has_avx2_fma() ? shifted_sums_avx2_fma : shifted_sums_baseline;
-  return version(image, patch, center);
+}  // namespace
+
+PatchSums patch_sums(const cv::Mat& image,
+                     const Patch& patch,
+                     const Warp& warp,
+                     MotionModel unknown,
+                     bool avx2_fma) {
+  return avx2_fma ? patch_sums_avx2_fma(image, patch, warp, unknown)
+                  : accumulate(image, patch, warp);
+}
+
+PatchSums shifted_sums(const cv::Mat& image,
+                       const Patch& patch,
+                       const Eigen::Vector2d& center,
+                       bool avx2_fma) {
+  return avx2_fma ? shifted_sums_avx2_fma(image, patch, center)
+                  : accumulate_shifted(image, patch, center);
 }
 
 }  // namespace gpo

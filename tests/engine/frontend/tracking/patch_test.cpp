@@ -74,10 +74,10 @@ void expect_near(const PatchSums& sums, const Vector8d& products, double squares
 /// Compares both versions with slow sums; those of a shift may lack the products of dx and dy.
 void expect_slow_sums(const cv::Mat& smoothed, const Patch& patch, const Warp& warp) {
   const auto [products, squares] = slow_sums(smoothed, patch, warp);
-  for (const auto version : {patch_sums_baseline, patch_sums_avx2_fma}) {
-    if (version == patch_sums_avx2_fma && !has_avx2_fma()) continue;
-    expect_near(version(smoothed, patch, warp, MotionModel::affine), products, squares);
-    PatchSums of_shift = version(smoothed, patch, warp, MotionModel::shift);
+  for (const bool avx2_fma : {false, has_avx2_fma()}) {
+    expect_near(
+        patch_sums(smoothed, patch, warp, MotionModel::affine, avx2_fma), products, squares);
+    PatchSums of_shift = patch_sums(smoothed, patch, warp, MotionModel::shift, avx2_fma);
     of_shift.products.segment<4>(2) = products.segment<4>(2).cast<float>();
     expect_near(of_shift, products, squares);
   }
@@ -119,9 +119,8 @@ TEST(PatchKernel, TakesPixelsLikeATemplate) {
   patch.row = 16;
   for (auto* values : {&patch.dx, &patch.slope_x, &patch.slope_y, &patch.brightness})
     values->resize(16 * 16);
-  for (const auto version : {take_pixels_baseline, take_pixels_avx2_fma}) {
-    if (version == take_pixels_avx2_fma && !has_avx2_fma()) continue;
-    const Eigen::Matrix4d normal = version(smoothed, {50, 40}, patch);
+  for (const bool avx2_fma : {false, has_avx2_fma()}) {
+    const Eigen::Matrix4d normal = take_pixels(smoothed, {50, 40}, patch, avx2_fma);
     Eigen::Matrix4d slow = Eigen::Matrix4d::Zero();
     const float offset = patch.brightness[0] - whole.brightness[0];
     for (int k = 0; k < 16 * 16; ++k) {
@@ -156,9 +155,8 @@ TEST(PatchKernel, MatchesSlowSumsOfAShift) {
   const Vector2d center(47.3, 52.9);
   auto [products, squares] = slow_sums(smoothed, patch, Warp{center});
   products.segment<4>(2).setZero();
-  expect_near(shifted_sums_baseline(smoothed, patch, center), products, squares);
-  if (has_avx2_fma())
-    expect_near(shifted_sums_avx2_fma(smoothed, patch, center), products, squares);
+  for (const bool avx2_fma : {false, has_avx2_fma()})
+    expect_near(shifted_sums(smoothed, patch, center, avx2_fma), products, squares);
 }
 
 TEST(PatchKernel, ReadsOnlyPixelsOfTheImageInTheInsidePart) {
