@@ -169,16 +169,6 @@ void append(Followed followed, Tracks& tracks) {
   tracks.forward_backward_px.push_back(std::move(followed.forward_backward_px));
 }
 
-Tracks corners_of_reference(const cv::Mat& gray, int start) {
-  Tracks tracks;
-  tracks.start = start;
-  tracks.raw_px.push_back(detect_corners(gray));
-  for (int j = 0; j < tracks.raw_px[0].cols(); ++j) tracks.ids.push_back(j);
-  tracks.forward_backward_px.emplace_back(Eigen::VectorXd::Constant(tracks.track_count(), kLost));
-  tracks.ends.resize(tracks.track_count());
-  return tracks;
-}
-
 }  // namespace
 
 Eigen::Matrix2Xd detect_corners(const cv::Mat& gray) {
@@ -217,62 +207,46 @@ Eigen::Matrix2Xd detect_corners(const cv::Mat& gray) {
   return raw_px;
 }
 
-struct WindowTracker::State {
-  Camera camera;
-  Tracks tracks;
-  Pyramid last;
-  Anchors anchors;
-};
-
-WindowTracker::WindowTracker(const Camera& camera, Tracking tracking, int start)
-    : state_(std::make_unique<State>()) {
-  state_->camera = camera;
-  state_->tracks.start = start;
-  state_->tracks.anchored = tracking == Tracking::anchored;
+WindowTracker::WindowTracker(const Camera& camera, Tracking tracking, int start) : camera_(camera) {
+  tracks_.start = start;
+  tracks_.anchored = tracking == Tracking::anchored;
 }
 
-WindowTracker::~WindowTracker() = default;
-WindowTracker::WindowTracker(WindowTracker&&) noexcept = default;
-WindowTracker& WindowTracker::operator=(WindowTracker&&) noexcept = default;
-
 void WindowTracker::add(const cv::Mat& gray) {
-  auto& [camera, tracks, last, anchors] = *state_;
-  const bool anchored = tracks.anchored;
+  const bool anchored = tracks_.anchored;
   Pyramid next = anchored ? smoothed_pyramid(gray) : build_pyramid(gray);
-  if (tracks.raw_px.empty()) {
-    tracks = corners_of_reference(gray, tracks.start);
-    tracks.anchored = anchored;
-    if (anchored) anchors = make_anchors(next.front(), tracks.raw_px[0], camera);
+  if (tracks_.raw_px.empty()) {
+    tracks_.raw_px.push_back(detect_corners(gray));
+    for (int j = 0; j < tracks_.raw_px[0].cols(); ++j) tracks_.ids.push_back(j);
+    tracks_.forward_backward_px.emplace_back(
+        Eigen::VectorXd::Constant(tracks_.track_count(), kLost));
+    tracks_.ends.resize(tracks_.track_count());
+    if (anchored) anchors_ = make_anchors(next.front(), tracks_.raw_px[0], camera_);
   } else {
-    const double most_px = kMostForwardBackward * patch_unit(camera);
-    const Eigen::Matrix2Xd& before = tracks.raw_px.back();
-    append(anchored ? follow(last, next, before, anchors) : follow(last, next, before, most_px),
-           tracks);
+    const double most_px = kMostForwardBackward * patch_unit(camera_);
+    const Eigen::Matrix2Xd& before = tracks_.raw_px.back();
+    append(anchored ? follow(last_, next, before, anchors_) : follow(last_, next, before, most_px),
+           tracks_);
   }
-  last = std::move(next);
+  last_ = std::move(next);
 }
 
 void WindowTracker::drop_every_second() {
-  Tracks& tracks = state_->tracks;
-  Tracks kept = tracks;
+  Tracks kept = tracks_;
   kept.raw_px.clear();
   kept.forward_backward_px.clear();
-  std::vector<int> moved(tracks.frame_count());  // the first frame that is kept from here on
-  for (int i = 0; i < tracks.frame_count(); ++i) {
-    const bool stays = i % 2 == 0 || i + 1 == tracks.frame_count();
+  std::vector<int> moved(tracks_.frame_count());  // the first frame that is kept from here on
+  for (int i = 0; i < tracks_.frame_count(); ++i) {
+    const bool stays = i % 2 == 0 || i + 1 == tracks_.frame_count();
     moved[i] = kept.frame_count();
     if (!stays) continue;
-    kept.raw_px.push_back(std::move(tracks.raw_px[i]));
-    kept.forward_backward_px.push_back(std::move(tracks.forward_backward_px[i]));
+    kept.raw_px.push_back(std::move(tracks_.raw_px[i]));
+    kept.forward_backward_px.push_back(std::move(tracks_.forward_backward_px[i]));
   }
   for (auto& end : kept.ends)
     if (end) end->frame = moved[end->frame];
-  tracks = std::move(kept);
+  tracks_ = std::move(kept);
 }
-
-const Tracks& WindowTracker::tracks() const { return state_->tracks; }
-
-Tracks WindowTracker::take() { return std::move(state_->tracks); }
 
 std::optional<Tracks> track_window(const GrayImages& gray_at,
                                    const Camera& camera,
@@ -285,7 +259,7 @@ std::optional<Tracks> track_window(const GrayImages& gray_at,
     tracker.add(gray_at(span.start + i));
     if (run.progress) run.progress(i + 1, span.frames);
   }
-  return tracker.take();
+  return tracker.tracks();
 }
 
 }  // namespace gpo

@@ -7,7 +7,6 @@
 #include "engine/geometry/camera.h"
 
 #include <functional>
-#include <memory>
 #include <span>
 #include <stop_token>
 
@@ -118,20 +117,18 @@ struct TrackingRun {
 class WindowTracker {
  public:
   WindowTracker(const Camera& camera, Tracking tracking, int start = 0);
-  ~WindowTracker();
-  WindowTracker(WindowTracker&&) noexcept;
-  WindowTracker& operator=(WindowTracker&&) noexcept;
 
   /// Adds the next image, CV_8UC1.
   void add(const cv::Mat& gray);
   /// Forgets every second frame but the first and the last.
   void drop_every_second();
-  const Tracks& tracks() const;
-  Tracks take();
+  const Tracks& tracks() const { return tracks_; }
 
  private:
-  struct State;
-  std::unique_ptr<State> state_;
+  Camera camera_;
+  Tracks tracks_;
+  std::vector<cv::Mat> last_;  ///< pyramid of the last image
+  Anchors anchors_;            ///< in anchored tracking
 };
 
 /// Detects corners in the reference frame and tracks them from frame to frame: by pyramidal KLT,
