@@ -5,7 +5,6 @@
 #include "engine/base/error.h"
 #include "engine/base/limits.h"
 #include "engine/geometry/decompositions.h"
-#include "engine/geometry/lens_functions.h"
 #include "engine/geometry/pose.h"
 
 #include <algorithm>
@@ -57,7 +56,7 @@ void check_uncertainty(const Camera& camera) {
 }
 
 Vector2d distort_normalized(const Camera& camera, const Vector2d& ideal) {
-  return lens_functions(camera.distortion).distort(camera.coefficients, ideal);
+  return lens_model(camera.distortion).distort(camera.coefficients, ideal);
 }
 
 double unit_of_diagonal(double px) {
@@ -208,7 +207,7 @@ Vector2d undistort(const Camera& camera, const Vector2d& raw_px) {
   if (camera.distortion == Distortion::none) return raw_px;
   const double tolerance = 1e-10 / std::max(camera.fx, camera.fy);
   return to_pixel(camera,
-                  lens_functions(camera.distortion)
+                  lens_model(camera.distortion)
                       .undistort(camera.coefficients, from_pixel(camera, raw_px), tolerance));
 }
 
@@ -258,10 +257,6 @@ Camera camera_of_focal(int width, int height, double focal_diagonals) {
 
 Camera camera_of_view(int width, int height, double diagonal_deg) {
   return camera_of_focal(width, height, 0.5 / std::tan(radians(diagonal_deg) / 2));
-}
-
-std::optional<std::string> coefficient_fault(const Camera& camera) {
-  return fault_of(camera.distortion, camera.coefficients);
 }
 
 }  // namespace gpo

@@ -3,10 +3,10 @@
 #pragma once
 
 #include <cstddef>
-#include <optional>
 #include <span>
-#include <string>
 #include <vector>
+
+#include <Eigen/Core>
 
 namespace gpo {
 
@@ -22,18 +22,21 @@ enum class Distortion {
   thin_prism_fisheye,  ///< equidistant, then Brown and thin prism, as in COLMAP
 };
 
+using Coefficients = std::span<const double>;
+
 struct LensModel {
   Distortion distortion;
   const char* name;                 ///< in EuRoC's files, bags, JSON and Python
   const char* coefficients;         ///< names in order
   std::vector<std::size_t> counts;  ///< accepted numbers of coefficients
+  /// Maps (x / z, y / z) to its distorted counterpart, with slope 1 at the principal point. This
+  /// and its inverse return NaN beyond the valid radius.
+  Eigen::Vector2d (*distort)(Coefficients k, const Eigen::Vector2d& x);
+  Eigen::Vector2d (*undistort)(Coefficients k, const Eigen::Vector2d& distorted, double tolerance);
 };
 
 /// Returns all lens models in the order of `Distortion`.
 const std::vector<LensModel>& lens_models();
 const LensModel& lens_model(Distortion distortion);
-
-/// Returns a coefficient outside of the range in which the model is defined, for people.
-std::optional<std::string> fault_of(Distortion distortion, std::span<const double> coefficients);
 
 }  // namespace gpo

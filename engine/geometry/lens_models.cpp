@@ -1,6 +1,8 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/geometry/lens_functions.h"
+#include "engine/geometry/lens_models.h"
+
+#include "engine/geometry/camera.h"
 
 #include <algorithm>
 #include <array>
@@ -269,16 +271,6 @@ Vector2d invert_thin_prism_fisheye(Coefficients k, const Vector2d& distorted, do
 Vector2d pinhole(Coefficients /*k*/, const Vector2d& x) { return x; }
 Vector2d invert_pinhole(Coefficients /*k*/, const Vector2d& x, double /*tolerance*/) { return x; }
 
-constexpr std::array<LensFunctions, 8> kFunctions = {
-    {{pinhole, invert_pinhole},
-     {radial_tangential, invert_radial_tangential},
-     {equidistant, invert_equidistant},
-     {double_sphere, invert_double_sphere},
-     {extended_unified, invert_extended_unified},
-     {omnidirectional, invert_omnidirectional},
-     {field_of_view, invert_field_of_view},
-     {thin_prism_fisheye, invert_thin_prism_fisheye}}};
-
 /// Range of a coefficient in which a model is defined.
 struct CoefficientRange {
   Distortion distortion;
@@ -298,21 +290,24 @@ constexpr std::array<CoefficientRange, 6> kRanges = {
 
 }  // namespace
 
-const LensFunctions& lens_functions(Distortion distortion) {
-  return kFunctions.at(static_cast<std::size_t>(distortion));
-}
-
 const std::vector<LensModel>& lens_models() {
-  using enum Distortion;
+  // clang-format off
   static const std::vector<LensModel> kModels = {
-      {none, "none", "", {0}},
-      {radial_tangential, "radial-tangential", "k1, k2, p1, p2, k3, ...", {4, 5, 8, 12, 14}},
-      {equidistant, "equidistant", "k1, k2, k3, k4", {4}},
-      {double_sphere, "double-sphere", "xi, alpha", {2}},
-      {extended_unified, "extended-unified", "alpha, beta", {2}},
-      {omnidirectional, "omnidirectional", "xi, k1, k2, p1, p2", {5}},
-      {field_of_view, "field-of-view", "w", {1}},
-      {thin_prism_fisheye, "thin-prism-fisheye", "k1, k2, p1, p2, k3, k4, s1, s2", {8}}};
+      {Distortion::none, "none", "", {0}, pinhole, invert_pinhole},
+      {Distortion::radial_tangential, "radial-tangential", "k1, k2, p1, p2, k3, ...",
+       {4, 5, 8, 12, 14}, radial_tangential, invert_radial_tangential},
+      {Distortion::equidistant, "equidistant", "k1, k2, k3, k4", {4},
+       equidistant, invert_equidistant},
+      {Distortion::double_sphere, "double-sphere", "xi, alpha", {2},
+       double_sphere, invert_double_sphere},
+      {Distortion::extended_unified, "extended-unified", "alpha, beta", {2},
+       extended_unified, invert_extended_unified},
+      {Distortion::omnidirectional, "omnidirectional", "xi, k1, k2, p1, p2", {5},
+       omnidirectional, invert_omnidirectional},
+      {Distortion::field_of_view, "field-of-view", "w", {1}, field_of_view, invert_field_of_view},
+      {Distortion::thin_prism_fisheye, "thin-prism-fisheye", "k1, k2, p1, p2, k3, k4, s1, s2", {8},
+       thin_prism_fisheye, invert_thin_prism_fisheye}};
+  // clang-format on
   return kModels;
 }
 
@@ -320,10 +315,10 @@ const LensModel& lens_model(Distortion distortion) {
   return lens_models().at(static_cast<std::size_t>(distortion));
 }
 
-std::optional<std::string> fault_of(Distortion lens, Coefficients coefficients) {
+std::optional<std::string> coefficient_fault(const Camera& camera) {
   for (const auto& [distortion, place, name, low, high] : kRanges) {
-    const double value = coefficient(coefficients, place);
-    if (lens == distortion && !(value >= low && value <= high))
+    const double value = coefficient(camera.coefficients, place);
+    if (camera.distortion == distortion && !(value >= low && value <= high))
       return fmt::format("{} {:g} outside of {:g} to {:g}", name, value, low, high);
   }
   return std::nullopt;
