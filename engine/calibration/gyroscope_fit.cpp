@@ -139,15 +139,9 @@ std::vector<Observed> observed_windows(const std::vector<ImageRotations>& window
   for (const ImageRotations& window : windows) {
     const std::int64_t first_ns = window.timestamps_ns.front() + to_ns(state.offset_s - kMargin_s);
     const std::int64_t last_ns = window.timestamps_ns.back() + to_ns(state.offset_s + kMargin_s);
-    const auto& times = gyroscope.timestamps_ns;
-    const auto a = std::ranges::lower_bound(times, first_ns) - times.begin();
-    const auto b = std::ranges::upper_bound(times, last_ns) - times.begin();
-    Gyroscope part;
-    part.timestamps_ns.assign(times.begin() + a, times.begin() + b);
-    part.rates_rad_s.assign(gyroscope.rates_rad_s.begin() + a, gyroscope.rates_rad_s.begin() + b);
     const double from_middle_s =
         1e-9 * static_cast<double>(window.timestamps_ns.front() - middle_ns);
-    all.push_back({&window, std::move(part), from_middle_s});
+    all.push_back({&window, samples_between(gyroscope, first_ns, last_ns), from_middle_s});
     if (residuals(all.back(), state).cols() == 0) all.pop_back();
   }
   return all;

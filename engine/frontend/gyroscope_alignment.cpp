@@ -65,36 +65,24 @@ std::vector<Interval> long_intervals_of(const ImageRotations& window) {
   constexpr double kSpan_ns = 1e8;
   const auto period_ns = static_cast<double>(median_period_ns(window.timestamps_ns));
   const auto span = static_cast<std::size_t>(std::max(1L, std::lround(kSpan_ns / period_ns)));
-  std::vector<Interval> all;
-  for (std::size_t i = span; i < window.R_wc.size(); ++i)
-    for (const Interval& one :
-         intervals_of({{{window.timestamps_ns[i - span], window.timestamps_ns[i]},
-                        {window.R_wc[i - span], window.R_wc[i]}}}))
-      all.push_back(one);
-  return all;
-}
-
-/// Returns the samples around a window, as integrals over long recordings take time.
-Gyroscope samples_around(const ImageRotations& window,
-                         const Gyroscope& gyroscope,
-                         double margin_s) {
-  const std::int64_t margin_ns = to_ns(margin_s);
-  const auto& times = gyroscope.timestamps_ns;
-  const auto from = std::ranges::lower_bound(
-      times, window.timestamps_ns.front() + gyroscope.time_offset_ns - margin_ns);
-  const auto to = std::ranges::upper_bound(
-      times, window.timestamps_ns.back() + gyroscope.time_offset_ns + margin_ns);
-  Gyroscope part;
-  part.timestamps_ns.assign(from, to);
-  part.rates_rad_s.assign(gyroscope.rates_rad_s.begin() + (from - times.begin()),
-                          gyroscope.rates_rad_s.begin() + (to - times.begin()));
-  return part;
+  return intervals_of({window}, span);
 }
 
 }  // namespace
 
 std::int64_t to_ns(double seconds) {
   return static_cast<std::int64_t>(std::llround(1e9 * seconds));
+}
+
+Gyroscope samples_between(const Gyroscope& gyroscope, std::int64_t first_ns, std::int64_t last_ns) {
+  const auto& times = gyroscope.timestamps_ns;
+  const auto from = std::ranges::lower_bound(times, first_ns);
+  const auto to = std::ranges::upper_bound(times, last_ns);
+  Gyroscope part;
+  part.timestamps_ns.assign(from, to);
+  part.rates_rad_s.assign(gyroscope.rates_rad_s.begin() + (from - times.begin()),
+                          gyroscope.rates_rad_s.begin() + (to - times.begin()));
+  return part;
 }
 
 RateIntegral::RateIntegral(const Gyroscope& gyroscope)
@@ -122,13 +110,13 @@ std::optional<Vector3d> RateIntegral::at(std::int64_t time_ns) const {
   return Vector3d(sums_[k - 1] + share * (sums_[k] - sums_[k - 1]));
 }
 
-std::vector<Interval> intervals_of(const std::vector<ImageRotations>& windows) {
+std::vector<Interval> intervals_of(const std::vector<ImageRotations>& windows, std::size_t frames) {
   std::vector<Interval> all;
   for (const ImageRotations& window : windows) {
-    for (std::size_t i = 1; i < window.R_wc.size(); ++i) {
-      const std::int64_t from_ns = window.timestamps_ns[i - 1];
+    for (std::size_t i = frames; i < window.R_wc.size(); ++i) {
+      const std::int64_t from_ns = window.timestamps_ns[i - frames];
       const std::int64_t to_ns = window.timestamps_ns[i];
-      const Vector3d rotation = so3_log(window.R_wc[i - 1].transpose() * window.R_wc[i]);
+      const Vector3d rotation = so3_log(window.R_wc[i - frames].transpose() * window.R_wc[i]);
       all.push_back({from_ns, to_ns, rotation / (1e-9 * static_cast<double>(to_ns - from_ns))});
     }
   }
@@ -187,7 +175,11 @@ GyroscopeCheck check_gyroscope_against(const ImageRotations& window, const Gyros
   constexpr double kWindow_s = 0.2, kStep_s = 0.0025;
   if (window.R_wc.size() <= kLeastIntervals) return {};
   const std::vector<Interval> intervals = long_intervals_of(window);
-  const Gyroscope samples = samples_around(window, gyroscope, kWindow_s + 0.1);
+  const std::int64_t margin_ns = to_ns(kWindow_s + 0.1);
+  const Gyroscope samples =
+      samples_between(gyroscope,
+                      window.timestamps_ns.front() + gyroscope.time_offset_ns - margin_ns,
+                      window.timestamps_ns.back() + gyroscope.time_offset_ns + margin_ns);
   const double recorded_s = 1e-9 * static_cast<double>(gyroscope.time_offset_ns);
   if (intervals.size() < kLeastIntervals || samples.timestamps_ns.size() < 2) return {};
   const RateIntegral integral(samples);

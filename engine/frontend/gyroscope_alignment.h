@@ -16,6 +16,10 @@ namespace gpo {
 
 std::int64_t to_ns(double seconds);
 
+/// Returns the rates from `first_ns` to `last_ns` on the gyroscope's clock, as integrals over long
+/// recordings take time.
+Gyroscope samples_between(const Gyroscope& gyroscope, std::int64_t first_ns, std::int64_t last_ns);
+
 /// Integrals of the gyroscope's rates from its first sample on, linear between samples, so that the
 /// mean rate over a span is a difference.
 class RateIntegral {
@@ -37,7 +41,9 @@ struct Interval {
   Eigen::Vector3d rate_rad_s;  ///< camera axes
 };
 
-std::vector<Interval> intervals_of(const std::vector<ImageRotations>& windows);
+/// Returns the rates from each frame of each window to the `frames`-th after it.
+std::vector<Interval> intervals_of(const std::vector<ImageRotations>& windows,
+                                   std::size_t frames = 1);
 
 /// Rates of gyroscope and images over the same spans.
 struct Pairs {
