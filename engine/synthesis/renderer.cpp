@@ -335,20 +335,14 @@ cv::Mat render(const Scene& scene, const RayMap& map, const std::vector<Pose>& p
   return light;
 }
 
-cv::Mat render_rows(const Scene& scene, const RayMap& map, const RowPoses& poses, int threads) {
+cv::Mat render_lines(
+    const Scene& scene, const RayMap& map, const LinePoses& poses, bool columns, int threads) {
   cv::Mat light(map.height, map.width, CV_32FC3);
-  in_parallel(map.height, threads, [&](int row) {
-    render_row(scene, map, make_eyes(scene, poses(row)), row, light);
-  });
-  return light;
-}
-
-cv::Mat render_columns(const Scene& scene, const RayMap& map, const RowPoses& poses, int threads) {
-  cv::Mat light(map.height, map.width, CV_32FC3);
-  in_parallel(map.width, threads, [&](int col) {
-    const std::vector<Eye> eyes = make_eyes(scene, poses(col));
+  in_parallel(columns ? map.width : map.height, threads, [&](int line) {
+    const std::vector<Eye> eyes = make_eyes(scene, poses(line));
+    if (!columns) return render_row(scene, map, eyes, line, light);
     for (int row = 0; row < map.height; ++row)
-      render_span(scene, map, eyes, {col, row, 1, 1}, light);
+      render_span(scene, map, eyes, {line, row, 1, 1}, light);
   });
   return light;
 }

@@ -92,9 +92,9 @@ RayMap make_ray_map(const Camera& camera, int samples, int threads);
 cv::Mat render(const Scene& scene, const RayMap& map, const std::vector<Pose>& poses, int threads);
 
 /// The same with poses for each row, or for each column (rolling shutter).
-using RowPoses = std::function<std::vector<Pose>(int row)>;
-cv::Mat render_rows(const Scene& scene, const RayMap& map, const RowPoses& poses, int threads);
-cv::Mat render_columns(const Scene& scene, const RayMap& map, const RowPoses& poses, int threads);
+using LinePoses = std::function<std::vector<Pose>(int line)>;
+cv::Mat render_lines(
+    const Scene& scene, const RayMap& map, const LinePoses& poses, bool columns, int threads);
 
 /// Adds lens blur, vignette, gain and noise: CV_8UC3. The same for equal seeds and any threads.
 cv::Mat expose(

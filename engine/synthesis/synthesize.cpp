@@ -106,8 +106,7 @@ void write_images(const Recipe& recipe,
   const auto step = [&] {
     if (progress) progress(0, recipe.frame_count);
   };
-  const auto render_lines =
-      readout_direction(recipe.camera).x() != 0 ? render_columns : render_rows;
+  const bool columns = readout_direction(recipe.camera).x() != 0;
   const Scene scene = make_scene(recipe, threads, step);
   step();
   const RayMap rays = make_ray_map(recipe.camera, recipe.image.samples, threads);
@@ -115,12 +114,12 @@ void write_images(const Recipe& recipe,
   for (int frame = 0; frame < recipe.frame_count; ++frame) {
     const std::int64_t timestamp = frame_timestamp_ns(recipe, frame);
     const double seconds = trajectory_seconds(recipe, timestamp);
-    const RowPoses row_poses = [&](int row) {
-      return exposure_poses(recipe, row_seconds(recipe, timestamp, row));
+    const LinePoses poses = [&](int line) {
+      return exposure_poses(recipe, row_seconds(recipe, timestamp, line));
     };
     const cv::Mat light = recipe.image.rolling_shutter > 0
-                              ? render_lines(scene, rays, row_poses, threads)
-                              : render(scene, rays, row_poses(0), threads);
+                              ? render_lines(scene, rays, poses, columns, threads)
+                              : render(scene, rays, poses(0), threads);
     const double gain =
         1 + recipe.image.gain_variation * std::sin(2 * std::numbers::pi * 0.6 * seconds);
     const std::uint64_t noise_seed = Random(recipe.seed, 1000 + frame).bits();
