@@ -248,9 +248,9 @@ std::vector<std::string> warnings_of(const CameraCalibration& result) {
         fmt::format("The board was slanted by only {:.0f} deg, so the focal length is uncertain: "
                     "film the board from the side",
                     result.slant_deg));
-  if (result.sigmas[0] > 0.01 * result.camera.fx)
+  if (result.camera.sigmas[0] > 0.01 * result.camera.fx)
     warnings.push_back(fmt::format("The uncertainty of the focal length is {:.1f} %",
-                                   100 * result.sigmas[0] / result.camera.fx));
+                                   100 * result.camera.sigmas[0] / result.camera.fx));
   if (result.rms_px > 1)
     warnings.push_back(
         fmt::format("The reprojection error is {:.2f} px RMS: blur, a board that is not flat, or "
@@ -274,17 +274,17 @@ std::string why_too_few(const BoardSearch& search, std::size_t sharp) {
 }
 
 Camera unknown_camera(cv::Size size, const CalibrationOptions& options) {
-  Camera camera;
-  camera.width = size.width;
-  camera.height = size.height;
   // That of a fisheye of 180 degrees; the other model finds its own start.
-  camera.fx = camera.fy = size.width / std::numbers::pi;
-  camera.cx = 0.5 * (size.width - 1);
-  camera.cy = 0.5 * (size.height - 1);
-  camera.distortion = options.distortion;
+  const double focal_px = size.width / std::numbers::pi;
   const bool equidistant = options.distortion == Distortion::equidistant;
-  camera.coefficients.assign(equidistant ? 4 : options.coefficients, 0.0);
-  return camera;
+  return {.width = size.width,
+          .height = size.height,
+          .fx = focal_px,
+          .fy = focal_px,
+          .cx = 0.5 * (size.width - 1),
+          .cy = 0.5 * (size.height - 1),
+          .distortion = options.distortion,
+          .coefficients = std::vector<double>(equidistant ? 4 : options.coefficients)};
 }
 
 }  // namespace
@@ -321,7 +321,6 @@ CameraCalibration calibrate_camera(const BoardSearch& search,
   result.ok = true;
   result.camera = solution->camera;
   set_lens_covariance(result.camera, estimate.covariance);
-  result.sigmas = estimate.sigmas;
   result.rms_px = solution->rms_px;
   result.bend_m = solution->bend_m;
   for (const auto& view : estimate.views) result.frames.push_back(view.frame);

@@ -49,11 +49,10 @@ struct CalibrationOptions {
 struct CameraCalibration {
   bool ok = false;
   std::string reason;  ///< why there is no camera
+  /// Its standard deviations are the larger ones of a jackknife over ten blocks of time and of the
+  /// least squares, which are multiplied if halves of these blocks disagree by more; 0 of
+  /// coefficients fixed at 0.
   Camera camera;
-  /// Standard deviations of fx, fy, cx, cy [px] and the coefficients [-]: the larger ones of a
-  /// jackknife over ten blocks of time and of the least squares, which are multiplied if halves of
-  /// these blocks disagree by more; 0 of coefficients fixed at 0.
-  std::vector<double> sigmas;
   double rms_px = 0;        ///< reprojection error of the corners [raw px]
   int examined = 0;         ///< images
   int found = 0;            ///< images that show the board

@@ -54,13 +54,13 @@ std::string camera_yaml(const Camera& camera, const YamlStyle& style) {
   return text + style.sigmas_remark + lens_uncertainty_yaml(camera, style.sigma_digits);
 }
 
-std::string parameter_rows(const Camera& camera, const std::vector<double>& sigmas) {
+std::string parameter_rows(const Camera& camera) {
   const auto names = parameter_names(camera);
   const auto values = parameters(camera);
   std::string text;
   for (std::size_t i = 0; i < names.size(); ++i)
-    text += i < 4 ? row(names[i].c_str(), "{:10.2f} +- {:.2f} px", values[i], sigmas[i])
-                  : row(names[i].c_str(), "{:10.5f} +- {:.5f}", values[i], sigmas[i]);
+    text += i < 4 ? row(names[i].c_str(), "{:10.2f} +- {:.2f} px", values[i], camera.sigmas[i])
+                  : row(names[i].c_str(), "{:10.5f} +- {:.5f}", values[i], camera.sigmas[i]);
   return text;
 }
 
@@ -173,10 +173,8 @@ std::string to_yaml(const CameraCalibration& calibration, const std::string& sou
                                  calibration.rms_px,
                                  seen(calibration));
   if (calibration.bend_m > 0) text += fmt::format("# board {}\n", board(calibration));
-  Camera with_sigmas = calibration.camera;
-  with_sigmas.sigmas = calibration.sigmas;
   return text + warning_lines("# warning: ", calibration.warnings) +
-         camera_yaml(with_sigmas,
+         camera_yaml(calibration.camera,
                      {.sigmas_remark = "# standard deviations, from leaving out blocks of time\n"});
 }
 
@@ -186,8 +184,7 @@ std::string to_text(const CameraCalibration& calibration) {
              calibration.frames.size(),
              calibration.found,
              calibration.examined) +
-         row("RMS", "{:.3f} px", calibration.rms_px) +
-         parameter_rows(calibration.camera, calibration.sigmas) +
+         row("RMS", "{:.3f} px", calibration.rms_px) + parameter_rows(calibration.camera) +
          row("seen", "{}", seen(calibration)) +
          (calibration.bend_m > 0 ? row("board", "{}", board(calibration)) : "") +
          warning_lines("warning     ", calibration.warnings);
@@ -208,8 +205,7 @@ std::string to_yaml(const SelfCalibration& calibration, const std::string& sourc
 std::string to_text(const SelfCalibration& calibration) {
   const PlaneLens& lens = calibration.lens;
   return row("seen", "{}", seen(calibration)) + row("RMS", "{:.3f} px", lens.rms_px) +
-         parameter_rows(lens.camera, lens.camera.sigmas) +
-         row(kLensNames[kReadout], "{}", readout(lens)) +
+         parameter_rows(lens.camera) + row(kLensNames[kReadout], "{}", readout(lens)) +
          warning_lines("warning     ", warnings_of(lens));
 }
 

@@ -87,7 +87,7 @@ double largest_normalized_error(const CameraCalibration& found, const Camera& tr
   const auto expected = parameters(truth);
   double largest = 0;
   for (std::size_t k = 0; k < values.size(); ++k)
-    largest = std::max(largest, std::abs(values[k] - expected[k]) / found.sigmas[k]);
+    largest = std::max(largest, std::abs(values[k] - expected[k]) / found.camera.sigmas[k]);
   return largest;
 }
 
@@ -105,7 +105,7 @@ TEST(Calibrate, EstimatesTheCameraWithinThreeStandardDeviations) {
     const auto found = calibrated(simulated({.count = 40, .seed = seed}));
     EXPECT_LT(largest_normalized_error(found, phone()), 3) << seed;
     EXPECT_LT(std::abs(normalized_aspect_error(found.camera, phone())), 3.5) << seed;
-    EXPECT_LT(found.sigmas[0], 6) << seed;
+    EXPECT_LT(found.camera.sigmas[0], 6) << seed;
     EXPECT_NEAR(found.rms_px, 0.15 * std::sqrt(2.0), 0.02);
     EXPECT_EQ(found.found, 40);
     EXPECT_GT(found.coverage, 0.7);
@@ -136,7 +136,7 @@ TEST(Calibrate, EstimatesAWideLens) {
     EXPECT_EQ(found.camera.distortion, Distortion::equidistant);
     // Standard deviations by ten blocks are rough: one of eight parameters may be beyond 3.
     EXPECT_LT(largest_normalized_error(found, wide()), 4) << seed;
-    EXPECT_LT(found.sigmas[0], 3) << seed;
+    EXPECT_LT(found.camera.sigmas[0], 3) << seed;
   }
 }
 
@@ -174,9 +174,9 @@ TEST(Calibrate, FixesUndeterminedCoefficientsAtZero) {
   const auto found = calibrated(simulated({.camera = narrow, .count = 40, .distance = 0.7}),
                                 {.distortion = Distortion::equidistant});
   EXPECT_EQ(found.camera.coefficients[3], 0);
-  EXPECT_EQ(found.sigmas[7], 0);
+  EXPECT_EQ(found.camera.sigmas[7], 0);
   EXPECT_THAT(found.warnings, testing::Contains(HasSubstr("k4 is not determined by these views")));
-  EXPECT_LT(std::abs(found.camera.fx - 1100), 3 * found.sigmas[0]);
+  EXPECT_LT(std::abs(found.camera.fx - 1100), 3 * found.camera.sigmas[0]);
 }
 
 TEST(Calibrate, ExplainsFailures) {
@@ -300,8 +300,7 @@ TEST(CalibrationReport, CanBeReadAsACalibration) {
   calibration.camera = phone();
   calibration.camera.readout = Readout{0.0213, 4e-4};
   calibration.camera.readout_direction = ReadoutDirection::left;
-  calibration.sigmas = {1.5, 1.6, 0.7, 0.8, 0.01, 0.02, 0.0003, 0.0004};
-  const Eigen::VectorXd sigmas = Eigen::VectorXd::Map(calibration.sigmas.data(), 8);
+  const Eigen::VectorXd sigmas{{1.5, 1.6, 0.7, 0.8, 0.01, 0.02, 0.0003, 0.0004}};
   set_lens_covariance(
       calibration.camera,
       0.5 * sigmas * sigmas.transpose() + 0.5 * Eigen::MatrixXd(sigmas.cwiseAbs2().asDiagonal()));

@@ -42,12 +42,12 @@ TEST_P(HeldOutHalves, DisagreeByLessThanThreeStandardDeviations) {
     const CameraCalibration whole = calibrate_camera(all, board);
     ASSERT_TRUE(whole.ok) << whole.reason;
     constexpr int kCx = 2;
-    EXPECT_GT(whole.sigmas[kCx], 0.02 * whole.camera.cx);
+    EXPECT_GT(whole.camera.sigmas[kCx], 0.02 * whole.camera.cx);
     return;
   }
   const auto of_a = parameters(a.camera), of_b = parameters(b.camera);
   for (std::size_t k = 0; k < 2; ++k)  // fx, fy
-    EXPECT_LT(std::abs(of_a[k] - of_b[k]), 3 * std::hypot(a.sigmas[k], b.sigmas[k]))
+    EXPECT_LT(std::abs(of_a[k] - of_b[k]), 3 * std::hypot(a.camera.sigmas[k], b.camera.sigmas[k]))
         << parameter_names(a.camera)[k];
 }
 
