@@ -8,6 +8,7 @@
 #include <memory>
 
 #include <Eigen/Geometry>
+#include <ceres/normal_prior.h>
 #include <ceres/rotation.h>
 
 namespace gpo {
@@ -50,28 +51,6 @@ class ReprojectionError {
   Eigen::Vector2d read_px_;  ///< motion until its row is read, for a readout of 1
   double width_;
   double height_;
-};
-
-template <int Size>
-struct PriorError {
-  Eigen::Matrix<double, Size, 1> mean;
-  Eigen::Matrix<double, Size, 1> weight;
-
-  template <typename T>
-  bool operator()(const T* value, T* error) const {
-    for (int k = 0; k < Size; ++k) error[k] = weight[k] * (value[k] - mean[k]);
-    return true;
-  }
-};
-
-struct HeightError {
-  double weight;
-
-  template <typename T>
-  bool operator()(const T* point, T* error) const {
-    error[0] = weight * point[2];
-    return true;
-  }
 };
 
 /// Rotation between two poses relative to the gyroscope's, in units of the noise.
@@ -122,10 +101,7 @@ CalibrationProblem::CalibrationProblem(const PlaneData& data, Adjustment& unknow
     problem_.SetManifold(lens_, new ceres::SubsetManifold(kLensUnknowns, {4, 5, 6, 7, kReadout}));
   const LensVector weights = data.options.prior_px * data.prior.sigma.cwiseInverse();
   problem_.AddResidualBlock(
-      new ceres::AutoDiffCostFunction<PriorError<kLensUnknowns>, kLensUnknowns, kLensUnknowns>(
-          new PriorError<kLensUnknowns>{data.prior.mean, weights}),
-      nullptr,
-      lens_);
+      new ceres::NormalPrior(ceres::Matrix(weights.asDiagonal()), data.prior.mean), nullptr, lens_);
   sources_.push_back({.rows = kLensUnknowns, .sigma_px = data.options.prior_px});
   add_views();
   hold_gauge();
@@ -197,7 +173,7 @@ void CalibrationProblem::add_heights() {
     for (Eigen::Index j = 0; j < unknowns_.planes[p].points.cols(); ++j) {
       if (!problem_.HasParameterBlock(point(p, j))) continue;
       problem_.AddResidualBlock(
-          new ceres::AutoDiffCostFunction<HeightError, 1, 3>(new HeightError{weight}),
+          new ceres::NormalPrior(Eigen::RowVector3d(0, 0, weight), Eigen::Vector3d::Zero()),
           nullptr,
           point(p, j));
       sources_.push_back({.rows = 1, .sigma_px = data_.options.noise_px});
@@ -207,11 +183,11 @@ void CalibrationProblem::add_heights() {
 
 void CalibrationProblem::add_rotations() {
   const double prior_px = data_.options.prior_px;
-  const Eigen::Vector3d weights = Eigen::Vector3d::Constant(prior_px / data_.gyro.bias_sigma_rad_s);
-  problem_.AddResidualBlock(new ceres::AutoDiffCostFunction<PriorError<3>, 3, 3>(
-                                new PriorError<3>{Eigen::Vector3d::Zero(), weights}),
-                            nullptr,
-                            bias_);
+  const double weight = prior_px / data_.gyro.bias_sigma_rad_s;
+  problem_.AddResidualBlock(
+      new ceres::NormalPrior(weight * Eigen::Matrix3d::Identity(), Eigen::Vector3d::Zero()),
+      nullptr,
+      bias_);
   sources_.push_back({.rows = 3, .sigma_px = prior_px});
   free_blocks_.push_back(bias_);
   for (std::size_t p = 0; p < data_.planes.size(); ++p) {
