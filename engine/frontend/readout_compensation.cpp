@@ -278,6 +278,15 @@ std::optional<Estimate> estimated_from(const Window& window) {
   return blocks.empty() ? std::nullopt : std::optional(estimate(blocks));
 }
 
+/// Estimates the row delay [s/row] from the residuals of the homographies of the window's planes,
+/// or of its inliers. Returns 0 unless it is plausible and significant beside errors that
+/// neighboring tracks share and those of a lens, cubic polynomials of the position.
+double visible_row_delay_s(const Window& window) {
+  const auto found = estimated_from(window);
+  if (!found || std::abs(found->row_delay_s) < kSignificantSigmas * found->sigma_s) return 0;
+  return is_plausible(window, found->row_delay_s) ? found->row_delay_s : 0;
+}
+
 Window with_points(Window window, std::vector<Matrix2Xd> points_px) {
   window.points_px = std::move(points_px);
   const auto refit = [&](const std::vector<std::vector<bool>>& inlier,
@@ -320,12 +329,6 @@ Window at_time_stamps(Window window) {
   if (window.selection_row_delay_s == 0) return window;
   auto points_px = without_readout(window, window.points_px, window.selection_row_delay_s);
   return with_points(std::move(window), std::move(points_px));
-}
-
-double visible_row_delay_s(const Window& window) {
-  const auto found = estimated_from(window);
-  if (!found || std::abs(found->row_delay_s) < kSignificantSigmas * found->sigma_s) return 0;
-  return is_plausible(window, found->row_delay_s) ? found->row_delay_s : 0;
 }
 
 std::vector<double> likely_row_delays_s(const Window& window) {

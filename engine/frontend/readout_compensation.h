@@ -26,11 +26,6 @@ std::vector<Eigen::Matrix2Xd> without_readout(const Window& window,
 /// inliers were selected, and with homographies fitted to them.
 Window at_time_stamps(Window window);
 
-/// Estimates the row delay [s/row] from the residuals of the homographies of the window's planes,
-/// or of its inliers. Returns 0 unless it is plausible and significant beside errors that
-/// neighboring tracks share and those of a lens, cubic polynomials of the position.
-double visible_row_delay_s(const Window& window);
-
 /// Returns plausible row delays within three standard deviations of the estimate; none if that is
 /// within two of zero.
 std::vector<double> likely_row_delays_s(const Window& window);

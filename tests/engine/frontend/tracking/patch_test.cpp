@@ -293,9 +293,9 @@ TEST(SmoothedImage, SpreadsAPixelOverItsNeighborsAndKeepsAUniformImage) {
     }
   const cv::Mat uniform = smooth_image(cv::Mat(6, 7, CV_8UC1, cv::Scalar(255)));
   for (const std::uint16_t value : cv::Mat_<std::uint16_t>(uniform))
-    EXPECT_EQ(value, 255 * kSmoothedGain);
+    EXPECT_EQ(value, 255 * 64);
   for (const std::uint16_t value : cv::Mat_<std::uint16_t>(halved(uniform)))
-    EXPECT_EQ(value, 255 * kSmoothedGain);
+    EXPECT_EQ(value, 255 * 64);
 }
 
 TEST(SmoothedImage, HalvesToMeansOfFour) {
