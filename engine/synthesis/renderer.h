@@ -54,10 +54,8 @@ struct Scene {
   cv::Mat stone;  ///< CV_8UC1, three dimensions: brightness of a block of stone
 };
 
-/// Paints a scene, with its rubble, which takes seconds. Calls `step` after each part; if `step`
-/// throws, painting ends.
-Scene make_scene(
-    const Recipe& recipe, int threads, const std::function<void()>& step = [] {});
+/// Paints a scene, with its rubble, which takes seconds.
+Scene make_scene(const Recipe& recipe, int threads);
 
 /// Interpolates a texture, CV_8UC3 or CV_32FC1, at the fraction (u, v) of its width and height, v
 /// downwards.

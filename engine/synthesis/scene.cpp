@@ -1,6 +1,7 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/base/parallel.h"
+#include "engine/base/stop.h"
 #include "engine/synthesis/drawing.h"
 #include "engine/synthesis/renderer.h"
 
@@ -23,12 +24,9 @@ struct FaceRecipe {
   Eigen::Vector2d origin;
 };
 
-cv::Mat paint_with_prints(const FaceRecipe& recipe,
-                          int threads,
-                          const std::function<void()>& step) {
+cv::Mat paint_with_prints(const FaceRecipe& recipe, int threads) {
   const auto& [face, surface, seed, prints, origin] = recipe;
   cv::Mat texture = paint_face(face, surface, seed, threads);
-  step();
   const double per_meter = kSheetTexelsPerMeter / face.scale;
   for (std::size_t i = 0; i < prints.size(); ++i) {
     const PrintRecipe& print = prints[i];
@@ -40,7 +38,6 @@ cv::Mat paint_with_prints(const FaceRecipe& recipe,
                turn_into(print.angle).topLeftCorner<2, 2>(),
                draw_print(print.kind, size, Random(seed, 100 + i))},
               threads);
-    step();
   }
   return texture;
 }
@@ -142,10 +139,7 @@ float wall_light(const SceneWall& wall, double height, double scale) {
   return static_cast<float>(direct * (1 - 0.25 * std::exp(-height / (0.06 * scale))));
 }
 
-SceneWall make_wall(const WallRecipe& recipe,
-                    double scale,
-                    int threads,
-                    const std::function<void()>& step) {
+SceneWall make_wall(const WallRecipe& recipe, double scale, int threads) {
   const Eigen::Vector2d foot = recipe.to - recipe.from;
   SceneWall wall;
   wall.foot = {recipe.from.x(), recipe.from.y(), 0};
@@ -153,8 +147,7 @@ SceneWall make_wall(const WallRecipe& recipe,
   wall.size = {foot.norm(), recipe.height};
   wall.texture = paint_with_prints(
       {{wall.size, scale}, recipe.surface, recipe.texture_seed, recipe.prints, -wall.size / 2},
-      threads,
-      step);
+      threads);
   for (int row = 0; row < wall.texture.rows; ++row) {
     const double height = (1 - (row + 0.5) / wall.texture.rows) * wall.size.y();
     cv::Mat pixels = wall.texture.row(row);
@@ -163,12 +156,12 @@ SceneWall make_wall(const WallRecipe& recipe,
   return wall;
 }
 
-Scene make_desk(const DeskRecipe& desk, int threads, const std::function<void()>& step) {
+Scene make_desk(const DeskRecipe& desk, int threads) {
   Scene scene;
   scene.desk_size = desk.size;
   scene.board = desk.board;
   scene.desk = paint_with_prints(
-      {face_of(desk), desk.surface, desk.texture_seed, desk.prints, {0, 0}}, threads, step);
+      {face_of(desk), desk.surface, desk.texture_seed, desk.prints, {0, 0}}, threads);
   if (desk.board) {
     const BoardRecipe& board = *desk.board;
     scene.R_board_world = turn_into(board.angle);
@@ -181,15 +174,13 @@ Scene make_desk(const DeskRecipe& desk, int threads, const std::function<void()>
               threads);
   }
   scene.light = make_light(desk);
-  step();
   apply_light(scene, threads);
-  step();
   for (std::size_t i = 0; i < desk.boxes.size(); ++i) {
+    check_stop();
     scene.boxes.push_back(make_box(desk.boxes[i], desk.scale, Random(desk.texture_seed, 1000 + i)));
-    step();
   }
   for (const WallRecipe& wall : desk.walls)
-    scene.walls.push_back(make_wall(wall, desk.scale, threads, step));
+    scene.walls.push_back(make_wall(wall, desk.scale, threads));
   return scene;
 }
 
@@ -249,11 +240,10 @@ cv::Mat make_stone(int threads) {
 
 }  // namespace
 
-Scene make_scene(const Recipe& recipe, int threads, const std::function<void()>& step) {
+Scene make_scene(const Recipe& recipe, int threads) {
   Scene scene;
-  if (has_desk(recipe)) scene = make_desk(recipe.desk, threads, step);
+  if (has_desk(recipe)) scene = make_desk(recipe.desk, threads);
   if (recipe.rubble.empty()) return scene;
-  step();
   scene.stone = make_stone(threads);
   for (const RubbleRecipe& heap : recipe.rubble)
     for (int i = 0; i < heap.count; ++i)

@@ -103,12 +103,9 @@ void write_images(const Recipe& recipe,
                   const fs::path& folder,
                   const SynthesisProgress& progress,
                   int threads) {
-  const auto step = [&] {
-    if (progress) progress(0, recipe.frame_count);
-  };
+  if (progress) progress(0, recipe.frame_count);
   const bool columns = readout_direction(recipe.camera).x() != 0;
-  const Scene scene = make_scene(recipe, threads, step);
-  step();
+  const Scene scene = make_scene(recipe, threads);
   const RayMap rays = make_ray_map(recipe.camera, recipe.image.samples, threads);
   std::string list = kImageListHead;
   for (int frame = 0; frame < recipe.frame_count; ++frame) {

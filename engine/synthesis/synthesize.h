@@ -19,7 +19,7 @@ struct ImuSample {
 /// Samples from 0.1 s before the first to 0.1 s after the last frame, never at a frame's time.
 std::vector<ImuSample> simulate_imu(const Recipe& recipe);
 
-/// Called after each frame, and with 0 after each part of the scene. If it throws, synthesis ends.
+/// Called after each frame, and with 0 before the scene is painted. If it throws, synthesis ends.
 using SynthesisProgress = std::function<void(int frames_done, int frames)>;
 
 /// Writes the recording as an EuRoC folder (README, "Recordings") with its truth, `plane.yaml` and
