@@ -164,9 +164,7 @@ int calibrate_by_board(const CalibrateArguments& arguments, const fs::path& reco
   warn_of_large_square(board.square_m);
   const auto images = open_images(recording, kCacheBytes, arguments.topics);
   ProgressBar bar("looking for the board");
-  const auto search =
-      find_calibration_views(*images, board, kMaxFrames, std::ref(bar), current_stop());
-  check_stop();
+  const auto search = find_calibration_views(*images, board, kMaxFrames, std::ref(bar));
   CameraCalibration calibration = calibrate_camera(search, board, options);
   if (!calibration.ok) return report_failure(calibration.reason);
   const Camera known = known_camera(arguments, recording);

@@ -140,9 +140,7 @@ std::optional<Camera> cached_camera(const fs::path& file) {
   }
 }
 
-SelfCalibration calibrate(const Recording& recording,
-                          const CalibrationProgress& progress,
-                          const std::stop_token& stop) {
+SelfCalibration calibrate(const Recording& recording, const CalibrationProgress& progress) {
   TimedGyroscope timed{.frame_times_ns = recording.timestamps_ns};
   if (recording.gyroscope && recording.T_body_camera)  // rotations need axes known in the camera
     timed.gyroscope = &*recording.gyroscope;
@@ -153,7 +151,7 @@ SelfCalibration calibrate(const Recording& recording,
                      : camera_of_view(known.width, known.height);
   if (recording.camera_source != CameraSource::self_calibrated) start.readout = known.readout;
   start.readout_direction = known.readout_direction;
-  return calibrate_from_plane(*recording.images, start, timed, progress, stop);
+  return calibrate_from_plane(*recording.images, start, timed, progress);
 }
 
 /// Caches the camera and sets it as read back from the file, so that later runs get equal bits.
@@ -254,9 +252,8 @@ std::shared_ptr<const Recording> open_given(const fs::path& path,
 
 Worker::Opened opened_for_window(const std::shared_ptr<const Recording>& recording) {
   Worker::Opened opened = Worker::with_inspector(recording);
-  opened.calibrate = [recording](const std::stop_token& stop, const Progress& progress) {
-    const SelfCalibration found = calibrate(*recording, progress, stop);
-    if (stop.stop_requested()) return Worker::Opened{};
+  opened.calibrate = [recording](const std::stop_token&, const Progress& progress) {
+    const SelfCalibration found = calibrate(*recording, progress);
     if (!found.lens.ok) throw InputError(failure_of(found));
     Recording calibrated = *recording;
     cache_camera(found, calibrated);
@@ -345,10 +342,7 @@ SelfCalibration self_calibrate(const Recording& recording) {
     shown = what;
     (*bar)(done, of);
   };
-  SelfCalibration found = calibrate(recording, progress, current_stop());
-  bar.reset();
-  check_stop();
-  return found;
+  return calibrate(recording, progress);
 }
 
 }  // namespace gpo

@@ -29,12 +29,12 @@ struct BoardSearch {
 };
 
 /// Searches at most `most_frames` images, evenly spread, on all processors. Leaves out views with
-/// fewer than 8 corners. Throws InputError if an image cannot be decoded or differs in size.
+/// fewer than 8 corners. Throws InputError if an image cannot be decoded or differs in size, and
+/// Stopped.
 BoardSearch find_calibration_views(const FrameCache& images,
                                    const Board& board,
                                    int most_frames,
-                                   const std::function<void(int done, int of)>& progress = {},
-                                   const std::stop_token& stop = {});
+                                   const std::function<void(int done, int of)>& progress = {});
 
 /// Chooses at most `count` views that differ most in place, size and slant, the sharper ones of
 /// similar views, in the order of time. Leaves out views with edges of twice the median width.

@@ -1,6 +1,7 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/base/error.h"
+#include "engine/base/stop.h"
 #include "engine/calibration/calibrate.h"
 #include "engine/geometry/statistics.h"
 #include "engine/recording/board/board.h"
@@ -165,8 +166,7 @@ std::optional<cv::Size> counts_in_images(const FrameCache& images,
 BoardSearch find_calibration_views(const FrameCache& images,
                                    const Board& board,
                                    int most_frames,
-                                   const std::function<void(int done, int of)>& progress,
-                                   const std::stop_token& stop) {
+                                   const std::function<void(int done, int of)>& progress) {
   const int taken = std::min(images.count(), most_frames);
   std::vector<int> frames(static_cast<std::size_t>(taken));
   for (int i = 0; i < taken; ++i)
@@ -193,10 +193,11 @@ BoardSearch find_calibration_views(const FrameCache& images,
     if (found) search.views.push_back(std::move(view));
     if (progress) progress(search.examined, static_cast<int>(frames.size()));
   };
-  for_each_image(images, frames, stop, patch);
+  for_each_image(images, frames, current_stop(), patch);
+  check_stop();
   std::ranges::sort(search.views, {}, &CalibrationView::frame);
   const bool is_chessboard = !board.markers && !board.tags;
-  if (is_chessboard && search.views.empty() && !stop.stop_requested())
+  if (is_chessboard && search.views.empty())
     search.other_counts = counts_in_images(images, frames, board);
   return search;
 }

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/calibration/plane/calibration_problem.h"
 
+#include "engine/base/stop.h"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -227,12 +229,10 @@ void CalibrationProblem::solve() {
     if (ordering->GroupId(block) < 0) ordering->AddElementToGroup(block, 1);
   options.linear_solver_ordering = ordering;
   struct Stop : ceres::IterationCallback {
-    explicit Stop(const std::stop_token& token) : stop(token) {}
     ceres::CallbackReturnType operator()(const ceres::IterationSummary&) override {
-      return stop.stop_requested() ? ceres::SOLVER_ABORT : ceres::SOLVER_CONTINUE;
+      return current_stop().stop_requested() ? ceres::SOLVER_ABORT : ceres::SOLVER_CONTINUE;
     }
-    std::stop_token stop;
-  } stop(data_.options.stop);
+  } stop;
   options.callbacks.push_back(&stop);
   ceres::Solver::Summary summary;
   ceres::Solve(options, &problem_, &summary);
@@ -282,6 +282,7 @@ LensVector lens_of(const Camera& camera) {
 Adjustment adjust(const PlaneData& problem, const Adjustment& start) {
   Adjustment result = start;
   CalibrationProblem(problem, result).solve();
+  check_stop();
   return result;
 }
 

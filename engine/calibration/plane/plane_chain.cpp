@@ -1,6 +1,7 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/base/parallel.h"
+#include "engine/base/stop.h"
 #include "engine/calibration/plane/plane_lens.h"
 #include "engine/frontend/inliers.h"
 #include "engine/geometry/homography.h"
@@ -42,7 +43,8 @@ std::optional<Tracks> tracks_at(const ChainImages& images,
                                 int start,
                                 int frames) {
   const auto gray = [&](int k) { return images.gray(k * images.step); };
-  auto tracks = track_window(gray, camera, {start, frames}, Tracking::anchored, {images.stop});
+  auto tracks = track_window(gray, camera, {start, frames}, Tracking::anchored, {current_stop()});
+  check_stop();
   if (tracks && tracks->track_count() == 0) tracks.reset();
   return tracks;
 }
@@ -172,15 +174,15 @@ std::optional<Matrix3d> refined(const Patches& patches, Matrix2Xd& found, const 
 
 std::vector<Matrix2Xd> in_all_samples(const Patches& patches,
                                       const std::vector<Sample>& samples,
-                                      const Camera& camera,
-                                      const std::stop_token& stop) {
+                                      const Camera& camera) {
   std::vector<Matrix2Xd> all(samples.size(),
                              Matrix2Xd::Constant(2, patches.undistorted_px.cols(), kNotFound));
   const auto first = std::ranges::lower_bound(samples, patches.frame, {}, &Sample::frame);
   const auto walk = [&](std::ptrdiff_t begin, std::ptrdiff_t end, std::ptrdiff_t step) {
     Matrix3d correction = Matrix3d::Identity();  // for the last sample's homography
     Matrix3d chained = patches.H_r_first;
-    for (std::ptrdiff_t i = begin; i != end && !stop.stop_requested(); i += step) {
+    for (std::ptrdiff_t i = begin; i != end; i += step) {
+      check_stop();
       Matrix3d H = samples[i].H_i_first * chained.inverse() * correction;
       for (int pass = 0; pass < kPasses; ++pass) {
         Matrix2Xd found = found_by(patches, H, samples[i].soft, camera);
@@ -253,9 +255,9 @@ Camera with_likely_distortion(const ChainImages& images, const Camera& guess) {
     camera.coefficients = {k1, 0, 0, 0};
     double on_plane = 0;
     for (const Tracks& tracks : windows) {
+      check_stop();
       const Window window = window_of(tracks, camera);
       if (!window.planes.empty()) on_plane += static_cast<double>(window.planes[0].tracks.size());
-      if (images.stop.stop_requested()) break;
     }
     if (k1 != 0) on_plane /= kClearlyMore;
     if (on_plane <= most) continue;
@@ -270,7 +272,7 @@ std::vector<PlaneChain> plane_chains(const ChainImages& images, const Camera& ca
   std::vector<PlaneChain> chains;
   std::vector<cv::Point2f> hull;  // around the plane's tracks at the end of the last window
   int start = 0;
-  while (start + 1 < count && !images.stop.stop_requested()) {
+  while (start + 1 < count) {
     if (images.progress) images.progress(start, count);
     const int frames = std::min(kWindowFrames + 1, count - start);
     const auto tracks = tracks_at(images, camera, start, frames);
@@ -310,7 +312,7 @@ ObservedPlane linked_views(const ChainImages& images,
   std::vector<Sample> samples;
   ObservedPlane plane;
   for (const auto& [frame, H] : spread(frames, most_views)) {
-    if (images.stop.stop_requested()) return plane;
+    check_stop();
     samples.push_back({frame, H, smooth_image(images.gray(frame))});
     plane.views.push_back({frame, {}, Matrix2Xd(2, 0)});
   }
@@ -322,7 +324,7 @@ ObservedPlane linked_views(const ChainImages& images,
   std::vector<std::vector<Matrix2Xd>> found(patches.size());
   in_parallel(static_cast<int>(patches.size()),
               static_cast<int>(std::thread::hardware_concurrency()),
-              [&](int r) { found[r] = in_all_samples(patches[r], samples, camera, images.stop); });
+              [&](int r) { found[r] = in_all_samples(patches[r], samples, camera); });
   for (const auto& of_reference : found) append(of_reference, samples, plane);
   for (PlaneView& view : plane.views) view.flow_px = flow_of(view, chain, camera);
   return plane;

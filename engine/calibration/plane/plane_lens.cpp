@@ -103,7 +103,6 @@ std::optional<Adjustment> best_by_few(const PlaneData& all,
     const Camera camera = with_focal(guess, focal_px);
     for (int n = 0; n < kNormals; ++n) {
       if (progress) progress(done++, kSteps);
-      if (all.options.stop.stop_requested()) return std::nullopt;
       PlaneData few = all;
       few.planes = thinned(all.planes);
       const auto start = started(few, camera, n);
@@ -170,7 +169,6 @@ Adjustment settled(PlaneData& problem,
   measure_motion(problem, now, flat);
   for (int round = 0; round < kRounds; ++round) {
     if (progress) progress(kSteps - 2 * kRounds + 2 * round, kSteps);
-    if (problem.options.stop.stop_requested()) break;
     const ViewErrors errors = reprojection_errors(problem, now);
     const double noise_px = noise_of(errors);
     problem.options.knee_px = kKnee * noise_px;
@@ -272,14 +270,12 @@ std::optional<Readout> readout_of(const PlaneLens& lens, std::span<const std::in
 PlaneLens lens_from_planes(std::vector<ObservedPlane> planes,
                            const GyroRotations& gyro,
                            const Camera& guess,
-                           const Progress& progress,
-                           const std::stop_token& stop) {
+                           const Progress& progress) {
   PlaneLens result;
   PlaneData problem{.planes = cleaned(std::move(planes)),
                     .gyro = gyro,
                     .width = guess.width,
                     .height = guess.height};
-  problem.options.stop = stop;
   problem.readout_direction = readout_direction(guess);
   result.views = counts_of(problem.planes).views;
   const auto failed = [&](std::string reason) {
@@ -291,13 +287,9 @@ PlaneLens lens_from_planes(std::vector<ObservedPlane> planes,
                               counted(result.views, "image"),
                               kLeastPlaneViews));
   const auto few = best_by_few(problem, guess, progress);
-  result.stopped = stop.stop_requested();
-  if (result.stopped) return failed("stopped");
   auto now = few ? begun(problem, few->lens) : std::nullopt;
   if (!now) return failed("no focal length explains the motion of the points");
   now = settled(problem, *std::move(now), result.left_out, progress);
-  result.stopped = stop.stop_requested();
-  if (result.stopped) return failed("stopped");
   if (!now->usable || counts_of(problem.planes).views < kLeastPlaneViews)
     return failed("the tracks are not on planes");
   take_lens(problem, *now, weigh_prior(problem, *now), result);
@@ -310,8 +302,7 @@ PlaneLens lens_from_planes(std::vector<ObservedPlane> planes,
 SelfCalibration calibrate_from_plane(const FrameCache& images,
                                      const Camera& guess,
                                      const TimedGyroscope& timed,
-                                     const CalibrationProgress& progress,
-                                     const std::stop_token& stop) {
+                                     const CalibrationProgress& progress) {
   const auto step = [&](const char* what) {
     return [&progress, what](int done, int of) {
       if (progress) progress(what, done, of);
@@ -320,8 +311,7 @@ SelfCalibration calibrate_from_plane(const FrameCache& images,
   const ChainImages chained{[&](int frame) { return images.gray(frame); },
                             images.count(),
                             1 + (images.count() - 1) / kMostFrames,
-                            step("following a plane"),
-                            stop};
+                            step("following a plane")};
   const Camera distorted = with_likely_distortion(chained, guess);
   std::vector<PlaneChain> chains = plane_chains(chained, distorted);
   std::erase_if(chains, [](const PlaneChain& chain) { return chain.references.empty(); });
@@ -330,7 +320,7 @@ SelfCalibration calibrate_from_plane(const FrameCache& images,
   if (chains.size() > kMostPlanes) chains.resize(kMostPlanes);
   std::vector<ObservedPlane> planes;
   const int count = static_cast<int>(chains.size());
-  for (int k = 0; k < count && !stop.stop_requested(); ++k) {
+  for (int k = 0; k < count; ++k) {
     step("finding its points in other images")(k, count);
     planes.push_back(
         linked_views(chained, chains[k], distorted, kMostChainViews / std::min(2, count)));
@@ -338,7 +328,7 @@ SelfCalibration calibrate_from_plane(const FrameCache& images,
   GyroRotations gyro;
   if (timed.gyroscope != nullptr) gyro = gyro_rotations_between(timed, planes);
   PlaneLens lens =
-      lens_from_planes(std::move(planes), gyro, distorted, step("estimating the lens"), stop);
+      lens_from_planes(std::move(planes), gyro, distorted, step("estimating the lens"));
   lens.camera.readout_direction = guess.readout_direction;
   lens.camera.readout = guess.readout ? guess.readout : readout_of(lens, timed.frame_times_ns);
   return {std::move(lens), !gyro.rotations.empty()};

@@ -46,12 +46,11 @@ struct ChainImages {
   int frames = 0;   ///< number of frames in the recording
   int step = 1;
   FrameProgress progress;
-  std::stop_token stop;
 };
 
 /// Follows the plane with most tracks from window to window. Each window begins where the one
 /// before ended and continues with the plane there; a lost plane ends the chain. `camera` is a
-/// guess. Incomplete if stopped.
+/// guess.
 std::vector<PlaneChain> plane_chains(const ChainImages& images, const Camera& camera);
 
 /// Returns the guess with the k1 for which most tracks of a few windows are on one plane: strong
@@ -115,7 +114,6 @@ struct PlaneAdjustmentOptions {
   double height_sigma = 0;  ///< prior of heights above a plane [distances]; 0 for flat planes
   int most_iterations = 40;
   bool holds_distortion = false;  ///< keeps distortion coefficients and readout
-  std::stop_token stop = {};
 };
 
 /// All data of a least squares over lens, points and poses.
@@ -220,7 +218,6 @@ constexpr double kPriorOnly = 0.7;
 /// Result of a calibration from planes of unknown structure.
 struct PlaneLens {
   bool ok = false;
-  bool stopped = false;
   std::string reason;  ///< why there is no camera
   Camera camera;       ///< with standard deviations
   LensVector lens = LensVector::Zero();
@@ -237,12 +234,11 @@ struct PlaneLens {
 /// Calibrates a camera by planar scenes (Triggs 1998; engine/method.md, "The lens from the plane").
 /// Starts from several focal lengths, with the best normals of each, and then minimizes over lens,
 /// points and poses. `guess` has the size of the images, roughly the lens distortion, and the
-/// direction of the readout.
+/// direction of the readout. Throws Stopped.
 PlaneLens lens_from_planes(std::vector<ObservedPlane> planes,
                            const GyroRotations& gyro,
                            const Camera& guess,
-                           const std::function<void(int done, int of)>& progress = {},
-                           const std::stop_token& stop = {});
+                           const std::function<void(int done, int of)>& progress = {});
 
 /// Result of a calibration without a board.
 struct SelfCalibration {
@@ -263,11 +259,10 @@ struct TimedGyroscope {
 /// Calibrates a camera by a plane in its images (engine/method.md, "The lens from the plane").
 /// `guess` has the size of the images and roughly their field of view. The result has its readout
 /// time if it has one, otherwise the one estimated from the images, for which the frames' times are
-/// needed. Throws InputError if an image cannot be decoded.
+/// needed. Throws InputError if an image cannot be decoded, and Stopped.
 SelfCalibration calibrate_from_plane(const FrameCache& images,
                                      const Camera& guess,
                                      const TimedGyroscope& timed = {},
-                                     const CalibrationProgress& progress = {},
-                                     const std::stop_token& stop = {});
+                                     const CalibrationProgress& progress = {});
 
 }  // namespace gpo

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/calibration/plane/plane_lens.h"
 
+#include "engine/base/stop.h"
 #include "engine/geometry/pose.h"
 
 #include <cmath>
@@ -320,7 +321,7 @@ TEST(PlaneLens, SeveralPlanesShareTheLens) {
   EXPECT_LT(normalized_errors(found, options.camera).cwiseAbs().maxCoeff(), 4);
 }
 
-TEST(PlaneLens, LeavesOutImagesThatDisagreeAndReturnsEarlyWhenStopped) {
+TEST(PlaneLens, LeavesOutImagesThatDisagreeAndEndsEarlyWhenStopped) {
   auto scene = simulate_views({}, 1);
   PlaneView& bad = scene.plane.views[11];
   std::mt19937_64 random(1);
@@ -331,11 +332,9 @@ TEST(PlaneLens, LeavesOutImagesThatDisagreeAndReturnsEarlyWhenStopped) {
   EXPECT_THAT(found.left_out, testing::ElementsAre(bad.frame));
   std::stop_source stop;
   stop.request_stop();
-  const Camera guess = guess_of(SimulatedViews{}.camera);
-  const auto early =
-      lens_from_planes({simulate_views({}, 1).plane}, {}, guess, {}, stop.get_token());
-  EXPECT_TRUE(early.stopped);
-  EXPECT_FALSE(early.ok);
+  const StopWatch watch{.stop = stop.get_token()};
+  const StopScope scope(&watch);
+  EXPECT_THROW(lens_from(simulate_views({}, 1).plane), Stopped);
 }
 
 }  // namespace
