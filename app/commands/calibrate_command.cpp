@@ -142,8 +142,8 @@ int calibrate_by_plane(const CalibrateArguments& arguments, const fs::path& reco
   const auto opened = open_recording(recording, {.tracks = {}, .cache_bytes = kCacheBytes});
   if (!opened->images)
     throw InputError(recording.string() + ": has no images, expected a video or images");
-  const SelfCalibration calibration = self_calibrate(*opened);
-  if (!calibration.lens.ok) return report_failure(calibration.lens.reason);
+  const PlaneLens calibration = self_calibrate(*opened);
+  if (!calibration.ok) return report_failure(calibration.reason);
   return write_camera(arguments, calibration);
 }
 

@@ -140,7 +140,7 @@ std::optional<Camera> cached_camera(const fs::path& file) {
   }
 }
 
-SelfCalibration calibrate(const Recording& recording, const CalibrationProgress& progress) {
+PlaneLens calibrate(const Recording& recording, const CalibrationProgress& progress) {
   TimedGyroscope timed{.frame_times_ns = recording.timestamps_ns};
   if (recording.gyroscope && recording.T_body_camera)  // rotations need axes known in the camera
     timed.gyroscope = &*recording.gyroscope;
@@ -155,15 +155,15 @@ SelfCalibration calibrate(const Recording& recording, const CalibrationProgress&
 }
 
 /// Caches the camera and sets it as read back from the file, so that later runs get equal bits.
-void cache_camera(const SelfCalibration& found, Recording& recording) {
+void cache_camera(const PlaneLens& found, Recording& recording) {
   const fs::path file = cache_file(recording);
   write_output(file, to_yaml(found, recording.name));
-  const Camera camera = cached_camera(file).value_or(found.lens.camera);
+  const Camera camera = cached_camera(file).value_or(found.camera);
   set_camera(recording, camera, CameraSource::self_calibrated, "cached in " + file.string());
 }
 
-std::string failure_of(const SelfCalibration& found) {
-  return "calibration from the plane failed: " + found.lens.reason;
+std::string failure_of(const PlaneLens& found) {
+  return "calibration from the plane failed: " + found.reason;
 }
 
 /// Sets the cached camera, else estimates one if `calibrates`; if that fails, adds a note.
@@ -175,8 +175,8 @@ void use_found_camera(Recording& recording, bool calibrates) {
     return;
   }
   if (!calibrates) return;
-  const SelfCalibration found = self_calibrate(recording);
-  if (found.lens.ok)
+  const PlaneLens found = self_calibrate(recording);
+  if (found.ok)
     cache_camera(found, recording);
   else
     recording.notes.push_back(failure_of(found));
@@ -253,8 +253,8 @@ std::shared_ptr<const Recording> open_given(const fs::path& path,
 Worker::Opened opened_for_window(const std::shared_ptr<const Recording>& recording) {
   Worker::Opened opened = Worker::with_inspector(recording);
   opened.calibrate = [recording](const std::stop_token&, const Progress& progress) {
-    const SelfCalibration found = calibrate(*recording, progress);
-    if (!found.lens.ok) throw InputError(failure_of(found));
+    const PlaneLens found = calibrate(*recording, progress);
+    if (!found.ok) throw InputError(failure_of(found));
     Recording calibrated = *recording;
     cache_camera(found, calibrated);
     auto next = opened_for_window(std::make_shared<const Recording>(std::move(calibrated)));
@@ -333,7 +333,7 @@ fs::path example_recording() {
   return example;
 }
 
-SelfCalibration self_calibrate(const Recording& recording) {
+PlaneLens self_calibrate(const Recording& recording) {
   std::optional<ProgressBar> bar;
   std::string shown;
   const auto progress = [&](const char* what, int done, int of) {

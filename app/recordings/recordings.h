@@ -55,6 +55,6 @@ fs::path example_recording();
 
 /// Calibrates the camera from a plane in view, with a progress bar on standard error. Starts from
 /// the recording's guess, else from a field of view of 70 deg.
-SelfCalibration self_calibrate(const Recording& recording);
+PlaneLens self_calibrate(const Recording& recording);
 
 }  // namespace gpo

@@ -75,13 +75,12 @@ std::string board(const CameraCalibration& calibration) {
                      1000 * calibration.bend_m);
 }
 
-std::string seen(const SelfCalibration& calibration) {
-  const PlaneLens& lens = calibration.lens;
+std::string seen(const PlaneLens& lens) {
   return fmt::format(
       "{} points in {} images{}, normals up to {:.0f} deg apart, moved by {:.2f} distances",
       lens.points,
       lens.views,
-      calibration.gyroscope ? " and the gyroscope" : "",
+      lens.gyroscope ? " and the gyroscope" : "",
       lens.tilt_deg,
       lens.moved);
 }
@@ -190,21 +189,19 @@ std::string to_text(const CameraCalibration& calibration) {
          warning_lines("warning     ", calibration.warnings);
 }
 
-std::string to_yaml(const SelfCalibration& calibration, const std::string& source) {
-  const PlaneLens& lens = calibration.lens;
+std::string to_yaml(const PlaneLens& lens, const std::string& source) {
   return fmt::format("# calibrated from {} and a plane in view, RMS {:.2f} px\n# {}\n# {}: {}\n",
                      source,
                      lens.rms_px,
-                     seen(calibration),
+                     seen(lens),
                      kLensNames[kReadout],
                      readout(lens)) +
          warning_lines("# warning: ", warnings_of(lens)) +
          camera_yaml(lens.camera, {.source = "source: self-calibrated\n"});
 }
 
-std::string to_text(const SelfCalibration& calibration) {
-  const PlaneLens& lens = calibration.lens;
-  return row("seen", "{}", seen(calibration)) + row("RMS", "{:.3f} px", lens.rms_px) +
+std::string to_text(const PlaneLens& lens) {
+  return row("seen", "{}", seen(lens)) + row("RMS", "{:.3f} px", lens.rms_px) +
          parameter_rows(lens.camera) + row(kLensNames[kReadout], "{}", readout(lens)) +
          warning_lines("warning     ", warnings_of(lens));
 }

@@ -12,13 +12,13 @@ namespace gpo {
 /// Formats a camera.yaml for `read_calibration`, with standard deviations under keys of their own.
 /// `source` names the recording in a comment.
 std::string to_yaml(const CameraCalibration& calibration, const std::string& source);
-std::string to_yaml(const SelfCalibration& calibration, const std::string& source);
+std::string to_yaml(const PlaneLens& lens, const std::string& source);
 /// The same of an unchanged camera, with the fitted `T_BS` and `timeshift_cam_imu`.
 std::string to_yaml(const GyroscopeFit& fit, const Camera& camera, const std::string& source);
 
 /// Formats a table for people, one parameter or fact a line.
 std::string to_text(const CameraCalibration& calibration);
-std::string to_text(const SelfCalibration& calibration);
+std::string to_text(const PlaneLens& lens);
 std::string to_text(const GyroscopeFit& fit, const Gyroscope& recorded);
 
 /// Angular rates over time in camera axes, by images and by the gyroscope before and after the fit,

@@ -294,15 +294,16 @@ PlaneLens lens_from_planes(std::vector<ObservedPlane> planes,
     return failed("the tracks are not on planes");
   take_lens(problem, *now, weigh_prior(problem, *now), result);
   measure_motion(problem, *now, result);
+  result.gyroscope = !gyro.rotations.empty();
   if (!(result.sigma[0] <= kMostLogFocalSigma)) return failed(why_unknown(result));
   result.ok = true;
   return result;
 }
 
-SelfCalibration calibrate_from_plane(const FrameCache& images,
-                                     const Camera& guess,
-                                     const TimedGyroscope& timed,
-                                     const CalibrationProgress& progress) {
+PlaneLens calibrate_from_plane(const FrameCache& images,
+                               const Camera& guess,
+                               const TimedGyroscope& timed,
+                               const CalibrationProgress& progress) {
   const auto step = [&](const char* what) {
     return [&progress, what](int done, int of) {
       if (progress) progress(what, done, of);
@@ -331,7 +332,7 @@ SelfCalibration calibrate_from_plane(const FrameCache& images,
       lens_from_planes(std::move(planes), gyro, distorted, step("estimating the lens"));
   lens.camera.readout_direction = guess.readout_direction;
   lens.camera.readout = guess.readout ? guess.readout : readout_of(lens, timed.frame_times_ns);
-  return {std::move(lens), !gyro.rotations.empty()};
+  return lens;
 }
 
 }  // namespace gpo

@@ -229,6 +229,7 @@ struct PlaneLens {
   double tilt_deg = 0;        ///< largest angle between the plane's normals in camera axes
   double moved = 0;           ///< largest camera motion [distances from the plane]
   std::vector<int> left_out;  ///< frames that disagree with the others
+  bool gyroscope = false;     ///< whether a gyroscope contributed
 };
 
 /// Calibrates a camera by planar scenes (Triggs 1998; engine/method.md, "The lens from the plane").
@@ -239,12 +240,6 @@ PlaneLens lens_from_planes(std::vector<ObservedPlane> planes,
                            const GyroRotations& gyro,
                            const Camera& guess,
                            const std::function<void(int done, int of)>& progress = {});
-
-/// Result of a calibration without a board.
-struct SelfCalibration {
-  PlaneLens lens;
-  bool gyroscope = false;  ///< whether a gyroscope contributed
-};
 
 /// Receives the current step and its progress: "following a plane", 41 of 60.
 using CalibrationProgress = std::function<void(const char* what, int done, int of)>;
@@ -260,9 +255,9 @@ struct TimedGyroscope {
 /// `guess` has the size of the images and roughly their field of view. The result has its readout
 /// time if it has one, otherwise the one estimated from the images, for which the frames' times are
 /// needed. Throws InputError if an image cannot be decoded, and Stopped.
-SelfCalibration calibrate_from_plane(const FrameCache& images,
-                                     const Camera& guess,
-                                     const TimedGyroscope& timed = {},
-                                     const CalibrationProgress& progress = {});
+PlaneLens calibrate_from_plane(const FrameCache& images,
+                               const Camera& guess,
+                               const TimedGyroscope& timed = {},
+                               const CalibrationProgress& progress = {});
 
 }  // namespace gpo

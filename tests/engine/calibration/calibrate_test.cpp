@@ -368,9 +368,9 @@ TEST(SelfCalibration, EstimatesTheCameraFromImagesOfAPlane) {
                            [&](const char* what, int, int) {
                              if (steps.empty() || steps.back() != what) steps.emplace_back(what);
                            });
-  ASSERT_TRUE(found.lens.ok) << found.lens.reason;
-  EXPECT_NEAR(found.lens.camera.fx, kFilmingCamera.fx, 0.01 * kFilmingCamera.fx) << to_text(found);
-  EXPECT_LT(std::abs(found.lens.camera.fx - kFilmingCamera.fx), 3 * found.lens.camera.sigmas[0])
+  ASSERT_TRUE(found.ok) << found.reason;
+  EXPECT_NEAR(found.camera.fx, kFilmingCamera.fx, 0.01 * kFilmingCamera.fx) << to_text(found);
+  EXPECT_LT(std::abs(found.camera.fx - kFilmingCamera.fx), 3 * found.camera.sigmas[0])
       << to_text(found);
   EXPECT_THAT(
       steps,
@@ -379,9 +379,9 @@ TEST(SelfCalibration, EstimatesTheCameraFromImagesOfAPlane) {
   const TestFolder folder;
   const Calibration read = read_calibration(folder.write("camera.yaml", to_yaml(found, "test")));
   EXPECT_EQ(read.source, CameraSource::self_calibrated);
-  EXPECT_NEAR(read.camera.fx, found.lens.camera.fx, 1e-4);
+  EXPECT_NEAR(read.camera.fx, found.camera.fx, 1e-4);
   ASSERT_EQ(read.camera.sigmas.size(), 8);
-  EXPECT_NEAR(read.camera.sigmas[0], found.lens.camera.sigmas[0], 0.01 * read.camera.sigmas[0]);
+  EXPECT_NEAR(read.camera.sigmas[0], found.camera.sigmas[0], 0.01 * read.camera.sigmas[0]);
   EXPECT_LT(std::abs(normalized_aspect_error(read.camera, kFilmingCamera)), 3.5);
   ASSERT_TRUE(read.camera.readout);
   EXPECT_LT(std::abs(read.camera.readout->seconds), 4 * read.camera.readout->sigma_s);
@@ -391,8 +391,8 @@ TEST(SelfCalibration, RefusesACameraThatKeepsItsTilt) {
   const FrameCache images = images_of(40, 1);
   const auto found =
       calibrate_from_plane(images, camera_of_view(kFilmingCamera.width, kFilmingCamera.height));
-  EXPECT_FALSE(found.lens.ok);
-  EXPECT_THAT(found.lens.reason, HasSubstr("keeps its tilt to the plane"));
+  EXPECT_FALSE(found.ok);
+  EXPECT_THAT(found.reason, HasSubstr("keeps its tilt to the plane"));
 }
 
 }  // namespace
