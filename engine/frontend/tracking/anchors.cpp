@@ -21,8 +21,7 @@ struct Step {
   const cv::Mat& image;
   const Matrix2Xd& before_px;
   const AnchorOptions& options;
-  AlignedTracks aligned{Matrix2Xd::Constant(2, before_px.cols(), kNaN),
-                        std::vector<std::optional<TrackEnd>>(before_px.cols())};
+  FollowedTracks aligned{before_px.cols()};
 
   bool was_seen(int j) const { return before_px.col(j).allFinite(); }
   bool is_seen(int j) const { return aligned.raw_px.col(j).allFinite(); }
@@ -183,11 +182,11 @@ Anchors make_anchors(const cv::Mat& image,
   return anchors;
 }
 
-AlignedTracks align_tracks(Anchors& anchors,
-                           const cv::Mat& image,
-                           const Matrix2Xd& before_px,
-                           const Matrix2Xd& flow_px,
-                           const AnchorOptions& options) {
+FollowedTracks align_tracks(Anchors& anchors,
+                            const cv::Mat& image,
+                            const Matrix2Xd& before_px,
+                            const Matrix2Xd& flow_px,
+                            const AnchorOptions& options) {
   Step step{.anchors = anchors, .image = image, .before_px = before_px, .options = options};
   for (int j = 0; j < before_px.cols(); ++j)
     if (step.was_seen(j)) step.take(j, search_from(step, j, flow_px.col(j)));

@@ -94,12 +94,6 @@ Flow flow(const Pyramid& from, const Pyramid& to, const std::vector<cv::Point2f>
   return result;
 }
 
-struct Followed {
-  Eigen::Matrix2Xd raw_px;                    ///< 2 x tracks, NaN: lost
-  Eigen::VectorXd forward_backward_px;        ///< NaN: not measured
-  std::vector<std::optional<TrackEnd>> ends;  ///< for tracks that are lost in it
-};
-
 /// Reason for losing a track that KLT found `there` (NaN: nowhere); nullopt if it is not lost.
 std::optional<TrackEnd> end_of(const cv::Point2f& there,
                                bool left,
@@ -112,10 +106,10 @@ std::optional<TrackEnd> end_of(const cv::Point2f& there,
   return TrackEnd{.reason = LossReason::forward_backward, .value = distance_px, .limit = most_px};
 }
 
-Followed follow(const Pyramid& from,
-                const Pyramid& to,
-                const Eigen::Matrix2Xd& before,
-                double most_px) {
+FollowedTracks follow(const Pyramid& from,
+                      const Pyramid& to,
+                      const Eigen::Matrix2Xd& before,
+                      double most_px) {
   std::vector<int> living;
   std::vector<cv::Point2f> points;
   for (int j = 0; j < before.cols(); ++j) {
@@ -123,9 +117,7 @@ Followed follow(const Pyramid& from,
     living.push_back(j);
     points.emplace_back(static_cast<float>(before(0, j)), static_cast<float>(before(1, j)));
   }
-  Followed after{Eigen::Matrix2Xd::Constant(2, before.cols(), kLost),
-                 Eigen::VectorXd::Constant(before.cols(), kLost),
-                 std::vector<std::optional<TrackEnd>>(before.cols())};
+  FollowedTracks after(before.cols());
   if (living.empty()) return after;
   const Flow forward = flow(from, to, points);
   std::vector<cv::Point2f> safe = forward.points;  // KLT does not expect NaN
@@ -143,23 +135,19 @@ Followed follow(const Pyramid& from,
   return after;
 }
 
-Followed follow(const SmoothedPyramid& from,
-                const SmoothedPyramid& to,
-                const Eigen::Matrix2Xd& before,
-                Anchors& anchors) {
+FollowedTracks follow(const SmoothedPyramid& from,
+                      const SmoothedPyramid& to,
+                      const Eigen::Matrix2Xd& before,
+                      Anchors& anchors) {
   std::vector<int> living;
   for (int j = 0; j < before.cols(); ++j)
     if (before.col(j).allFinite()) living.push_back(j);
   Eigen::Matrix2Xd flow_px = Eigen::Matrix2Xd::Constant(2, before.cols(), kLost);
   flow_px(Eigen::all, living) = coarse_flow(from, to, before(Eigen::all, living));
-  AlignedTracks aligned =
-      align_tracks(anchors, to.front(), before, flow_px, anchor_options(anchors.camera));
-  return {std::move(aligned.raw_px),
-          Eigen::VectorXd::Constant(before.cols(), kLost),
-          std::move(aligned.ends)};
+  return align_tracks(anchors, to.front(), before, flow_px, anchor_options(anchors.camera));
 }
 
-void append(Followed followed, Tracks& tracks) {
+void append(FollowedTracks followed, Tracks& tracks) {
   for (std::size_t j = 0; j < followed.ends.size(); ++j) {
     if (!followed.ends[j]) continue;
     tracks.ends[j] = followed.ends[j];

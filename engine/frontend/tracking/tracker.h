@@ -7,6 +7,7 @@
 #include "engine/geometry/camera.h"
 
 #include <functional>
+#include <limits>
 #include <span>
 #include <stop_token>
 
@@ -82,8 +83,15 @@ Anchors make_anchors(const cv::Mat& image,
                      const Camera& camera,
                      const AnchorOptions& options = {});
 
-struct AlignedTracks {
+/// Tracks in the next image.
+struct FollowedTracks {
+  explicit FollowedTracks(Eigen::Index tracks) : ends(tracks) {
+    raw_px.setConstant(2, tracks, std::numeric_limits<double>::quiet_NaN());
+    forward_backward_px.setConstant(tracks, std::numeric_limits<double>::quiet_NaN());
+  }
+
   Eigen::Matrix2Xd raw_px;                    ///< 2 x tracks, NaN: lost
+  Eigen::VectorXd forward_backward_px;        ///< NaN: not measured
   std::vector<std::optional<TrackEnd>> ends;  ///< for tracks that are lost here; frame 0
 };
 
@@ -91,11 +99,11 @@ struct AlignedTracks {
 /// the tracks in the image before, NaN: lost, and `flow_px` their rough motion since; both 2 x
 /// tracks, raw pixels. A track is lost if the alignment fails, if hardly any neighbor moves as it
 /// does, or if its template is an edge along which it slides.
-AlignedTracks align_tracks(Anchors& anchors,
-                           const cv::Mat& image,
-                           const Eigen::Matrix2Xd& before_px,
-                           const Eigen::Matrix2Xd& flow_px,
-                           const AnchorOptions& options = {});
+FollowedTracks align_tracks(Anchors& anchors,
+                            const cv::Mat& image,
+                            const Eigen::Matrix2Xd& before_px,
+                            const Eigen::Matrix2Xd& flow_px,
+                            const AnchorOptions& options = {});
 
 /// Detects FAST corners, the strongest of each cell of a grid, and refines them to sub-pixels.
 /// `gray` is CV_8UC1. Returns 2 x n raw pixels, ordered by cell and strength.

@@ -148,7 +148,7 @@ TEST(Anchors, LoseTracksOutsideOfAStationaryImage) {
       std::numeric_limits<double>::quiet_NaN(),  //
       100, smoothed.rows + 60, 50, 20;
   Anchors anchors = make_anchors(smoothed, corners, camera);
-  const AlignedTracks aligned =
+  const FollowedTracks aligned =
       align_tracks(anchors, smoothed, corners, Eigen::Matrix2Xd::Zero(2, 44));
   int found = 0;
   for (int k = 0; k < 40; ++k) found += aligned.raw_px.col(k).allFinite() ? 1 : 0;
@@ -179,7 +179,7 @@ TEST(Anchors, FindLivingTracksFromARoughGuess) {
   Eigen::Matrix2Xd flow = Eigen::Matrix2Xd::Zero(2, corners.cols());
   for (int j = 1; j < corners.cols(); ++j) flow.col(j) << (j % 2 == 0 ? 0.8 : -0.7), 0.5;
   Anchors anchors = make_anchors(smooth_image(gray), corners, recording->camera);
-  const AlignedTracks aligned = align_tracks(anchors, smooth_image(gray), before, flow);
+  const FollowedTracks aligned = align_tracks(anchors, smooth_image(gray), before, flow);
   EXPECT_FALSE(aligned.raw_px.col(0).allFinite());
   EXPECT_FALSE(aligned.ends[0]);
   int found = 0;
@@ -354,7 +354,7 @@ TEST(Anchors, WorkWithoutNeighbors) {
   const cv::Mat smoothed = smooth_image(recording->images->gray(0));
   const Eigen::Matrix2Xd corners = detect_corners(recording->images->gray(0)).leftCols(3);
   Anchors anchors = make_anchors(smoothed, corners, recording->camera);
-  const AlignedTracks aligned =
+  const FollowedTracks aligned =
       align_tracks(anchors, smoothed, corners, Eigen::Matrix2Xd::Zero(2, 3));
   EXPECT_LT((aligned.raw_px - corners).cwiseAbs().maxCoeff(), 0.01);
   const Eigen::Matrix2Xd none(2, 0);
