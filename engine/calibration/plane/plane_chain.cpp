@@ -92,15 +92,6 @@ constexpr double kMostArea = 6;      // the same
 constexpr double kLinkGate = 4;      // from the others' homography, wide as above [pixel_unit]
 const int kHalfPatch_px = AnchorOptions{}.half_patch_px;
 
-template <typename T>
-std::vector<T> spread(const std::vector<T>& all, int most) {
-  const auto count = std::ssize(all);
-  if (count <= most) return all;
-  std::vector<T> some;
-  for (std::ptrdiff_t k = 0; k < most; ++k) some.push_back(all[k * (count - 1) / (most - 1)]);
-  return some;
-}
-
 struct Sample {
   int frame;
   Matrix3d H_i_first;

@@ -57,6 +57,16 @@ std::vector<PlaneChain> plane_chains(const ChainImages& images, const Camera& ca
 /// distortion tears planes apart.
 Camera with_likely_distortion(const ChainImages& images, const Camera& guess);
 
+/// Returns at most `most` elements, spread evenly from the first to the last one.
+template <typename T>
+std::vector<T> spread(const std::vector<T>& all, int most) {
+  const auto count = std::ssize(all);
+  if (count <= most) return all;
+  std::vector<T> some;
+  for (std::ptrdiff_t k = 0; k < most; ++k) some.push_back(all[k * (count - 1) / (most - 1)]);
+  return some;
+}
+
 /// Finds the points of a chain's references in at most `most_views` images of the chain by their
 /// patches, warped by the homography from their reference: one set of points seen from everywhere.
 ObservedPlane linked_views(const ChainImages& images,

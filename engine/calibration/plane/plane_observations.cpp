@@ -278,12 +278,7 @@ std::vector<ObservedPlane> thinned(const std::vector<ObservedPlane>& planes) {
   std::vector<std::vector<bool>> chosen;  // points of each plane
   for (ObservedPlane& plane : few) {
     std::erase_if(plane.views, [](const PlaneView& view) { return view.points.empty(); });
-    const auto count = std::ssize(plane.views);
-    const auto wanted = std::min<std::ptrdiff_t>(count, kFewViews);
-    std::vector<PlaneView> views;
-    for (std::ptrdiff_t k = 0; k < wanted; ++k)
-      views.push_back(plane.views[k * (count - 1) / std::max<std::ptrdiff_t>(1, wanted - 1)]);
-    plane.views = std::move(views);
+    plane.views = spread(plane.views, kFewViews);
     const std::vector<int> counts = views_of_points(plane);
     std::vector<int> often;
     for (int j = 0; j < plane.points; ++j)
