@@ -141,9 +141,8 @@ std::optional<Camera> cached_camera(const fs::path& file) {
 }
 
 PlaneLens calibrate(const Recording& recording, const CalibrationProgress& progress) {
-  TimedGyroscope timed{.frame_times_ns = recording.timestamps_ns};
-  if (recording.gyroscope && recording.T_body_camera)  // rotations need axes known in the camera
-    timed.gyroscope = &*recording.gyroscope;
+  // Rotations need axes that are known in the camera.
+  const bool rotations = recording.gyroscope && recording.T_body_camera;
   // A guess may use the metadata of the camera; any other camera is replaced.
   const Camera& known = recording.camera;
   Camera start = recording.camera_source == CameraSource::guess
@@ -151,7 +150,11 @@ PlaneLens calibrate(const Recording& recording, const CalibrationProgress& progr
                      : camera_of_view(known.width, known.height);
   if (recording.camera_source != CameraSource::self_calibrated) start.readout = known.readout;
   start.readout_direction = known.readout_direction;
-  return calibrate_from_plane(*recording.images, start, timed, progress);
+  return calibrate_from_plane(*recording.images,
+                              start,
+                              recording.timestamps_ns,
+                              rotations ? &*recording.gyroscope : nullptr,
+                              progress);
 }
 
 /// Caches the camera and sets it as read back from the file, so that later runs get equal bits.

@@ -42,7 +42,7 @@ std::optional<Tracks> tracks_at(const ChainImages& images,
                                 const Camera& camera,
                                 int start,
                                 int frames) {
-  const auto gray = [&](int k) { return images.gray(k * images.step); };
+  const auto gray = [&](int k) { return images.cache.gray(k * images.step); };
   auto tracks = track_window(gray, camera, {start, frames}, Tracking::anchored, {current_stop()});
   check_stop();
   if (tracks && tracks->track_count() == 0) tracks.reset();
@@ -229,7 +229,7 @@ Matrix2Xd flow_of(const PlaneView& view, const PlaneChain& chain, const Camera& 
 }  // namespace
 
 Camera with_likely_distortion(const ChainImages& images, const Camera& guess) {
-  const int count = (images.frames + images.step - 1) / images.step;
+  const int count = images.count();
   const int frames = std::min(kWindowFrames, count);
   std::vector<Tracks> windows;
   for (int k = 0; k < kDistortionWindows; ++k) {
@@ -259,7 +259,7 @@ Camera with_likely_distortion(const ChainImages& images, const Camera& guess) {
 }
 
 std::vector<PlaneChain> plane_chains(const ChainImages& images, const Camera& camera) {
-  const int count = (images.frames + images.step - 1) / images.step;
+  const int count = images.count();
   std::vector<PlaneChain> chains;
   std::vector<cv::Point2f> hull;  // around the plane's tracks at the end of the last window
   int start = 0;
@@ -295,7 +295,7 @@ std::vector<PlaneChain> plane_chains(const ChainImages& images, const Camera& ca
   return chains;
 }
 
-ObservedPlane linked_views(const ChainImages& images,
+ObservedPlane linked_views(const FrameCache& images,
                            const PlaneChain& chain,
                            const Camera& camera,
                            int most_views) {

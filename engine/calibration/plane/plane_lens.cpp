@@ -234,16 +234,16 @@ constexpr int kMostChainViews = 60;     // for one chain; half of it for more
 constexpr double kGyroNoise_rad = 3e-4;
 constexpr double kGyroScale = 3e-3;
 
-GyroRotations gyro_rotations_between(const TimedGyroscope& timed,
+GyroRotations gyro_rotations_between(const Gyroscope& gyroscope,
+                                     std::span<const std::int64_t> frame_times_ns,
                                      const std::vector<ObservedPlane>& planes) {
-  const Gyroscope& gyroscope = *timed.gyroscope;
   GyroRotations gyro;
   gyro.bias_sigma_rad_s = gyroscope.bias_sigma_rad_s;
   for (const ObservedPlane& plane : planes) {
     for (std::size_t i = 1; i < plane.views.size(); ++i) {
       const int from = plane.views[i - 1].frame;
       const int to = plane.views[i].frame;
-      const std::array times{timed.frame_times_ns[from], timed.frame_times_ns[to]};
+      const std::array times{frame_times_ns[from], frame_times_ns[to]};
       const std::int64_t offset_ns = gyroscope.time_offset_ns;
       if (!why_not_covered(gyroscope, times[0] + offset_ns, times[1] + offset_ns).empty()) continue;
       const Rotations rotation = sensitive_gyro_rotations(gyroscope, times);
@@ -302,17 +302,16 @@ PlaneLens lens_from_planes(std::vector<ObservedPlane> planes,
 
 PlaneLens calibrate_from_plane(const FrameCache& images,
                                const Camera& guess,
-                               const TimedGyroscope& timed,
+                               std::span<const std::int64_t> frame_times_ns,
+                               const Gyroscope* gyroscope,
                                const CalibrationProgress& progress) {
   const auto step = [&](const char* what) {
     return [&progress, what](int done, int of) {
       if (progress) progress(what, done, of);
     };
   };
-  const ChainImages chained{[&](int frame) { return images.gray(frame); },
-                            images.count(),
-                            1 + (images.count() - 1) / kMostFrames,
-                            step("following a plane")};
+  const ChainImages chained{
+      images, 1 + (images.count() - 1) / kMostFrames, step("following a plane")};
   const Camera distorted = with_likely_distortion(chained, guess);
   std::vector<PlaneChain> chains = plane_chains(chained, distorted);
   std::erase_if(chains, [](const PlaneChain& chain) { return chain.references.empty(); });
@@ -324,14 +323,14 @@ PlaneLens calibrate_from_plane(const FrameCache& images,
   for (int k = 0; k < count; ++k) {
     step("finding its points in other images")(k, count);
     planes.push_back(
-        linked_views(chained, chains[k], distorted, kMostChainViews / std::min(2, count)));
+        linked_views(images, chains[k], distorted, kMostChainViews / std::min(2, count)));
   }
   GyroRotations gyro;
-  if (timed.gyroscope != nullptr) gyro = gyro_rotations_between(timed, planes);
+  if (gyroscope != nullptr) gyro = gyro_rotations_between(*gyroscope, frame_times_ns, planes);
   PlaneLens lens =
       lens_from_planes(std::move(planes), gyro, distorted, step("estimating the lens"));
   lens.camera.readout_direction = guess.readout_direction;
-  lens.camera.readout = guess.readout ? guess.readout : readout_of(lens, timed.frame_times_ns);
+  lens.camera.readout = guess.readout ? guess.readout : readout_of(lens, frame_times_ns);
   return lens;
 }
 

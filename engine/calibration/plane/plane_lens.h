@@ -42,10 +42,11 @@ struct PlaneChain {
 
 /// Every `step`-th image of a recording.
 struct ChainImages {
-  GrayImages gray;  ///< by frame of the recording
-  int frames = 0;   ///< number of frames in the recording
-  int step = 1;
+  const FrameCache& cache;
+  int step;
   FrameProgress progress;
+
+  int count() const { return (cache.count() + step - 1) / step; }
 };
 
 /// Follows the plane with most tracks from window to window. Each window begins where the one
@@ -69,7 +70,7 @@ std::vector<T> spread(const std::vector<T>& all, int most) {
 
 /// Finds the points of a chain's references in at most `most_views` images of the chain by their
 /// patches, warped by the homography from their reference: one set of points seen from everywhere.
-ObservedPlane linked_views(const ChainImages& images,
+ObservedPlane linked_views(const FrameCache& images,
                            const PlaneChain& chain,
                            const Camera& camera,
                            int most_views);
@@ -254,20 +255,15 @@ PlaneLens lens_from_planes(std::vector<ObservedPlane> planes,
 /// Receives the current step and its progress: "following a plane", 41 of 60.
 using CalibrationProgress = std::function<void(const char* what, int done, int of)>;
 
-/// A gyroscope with its axes in those of the camera, null if there is none, and the time of each
-/// frame (camera clock).
-struct TimedGyroscope {
-  const Gyroscope* gyroscope = nullptr;
-  std::span<const std::int64_t> frame_times_ns = {};
-};
-
 /// Calibrates a camera by a plane in its images (engine/method.md, "The lens from the plane").
 /// `guess` has the size of the images and roughly their field of view. The result has its readout
-/// time if it has one, otherwise the one estimated from the images, for which the frames' times are
-/// needed. Throws InputError if an image cannot be decoded, and Stopped.
+/// time if it has one, otherwise the one estimated from the images, for which the frames' times
+/// (camera clock) are needed. `gyroscope` has its axes in those of the camera and needs them, too;
+/// null if there is none. Throws InputError if an image cannot be decoded, and Stopped.
 PlaneLens calibrate_from_plane(const FrameCache& images,
                                const Camera& guess,
-                               const TimedGyroscope& timed = {},
+                               std::span<const std::int64_t> frame_times_ns = {},
+                               const Gyroscope* gyroscope = nullptr,
                                const CalibrationProgress& progress = {});
 
 }  // namespace gpo

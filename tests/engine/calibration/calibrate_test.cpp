@@ -364,7 +364,8 @@ TEST(SelfCalibration, EstimatesTheCameraFromImagesOfAPlane) {
   const auto found =
       calibrate_from_plane(images,
                            camera_of_view(kFilmingCamera.width, kFilmingCamera.height),
-                           {.frame_times_ns = times_ns},
+                           times_ns,
+                           nullptr,
                            [&](const char* what, int, int) {
                              if (steps.empty() || steps.back() != what) steps.emplace_back(what);
                            });
