@@ -90,7 +90,6 @@ constexpr int kMostReferences = 8;   // with points to find
 constexpr double kLeastArea = 0.15;  // area of a warped patch relative to its own [-]
 constexpr double kMostArea = 6;      // the same
 constexpr double kLinkGate = 4;      // from the others' homography, wide as above [pixel_unit]
-const int kHalfPatch_px = AnchorOptions{}.half_patch_px;
 
 struct Sample {
   int frame;
@@ -111,14 +110,15 @@ Patches patches_of(const PlaneReference& reference,
                    const Matrix3d& H_r_first,
                    const cv::Mat& soft,
                    const Camera& camera) {
-  const int half = kHalfPatch_px;
   Patches all{reference.frame, H_r_first, {}, {}, {}, {}};
   all.undistorted_px = all.corners_px = reference.raw_px;
   for (Eigen::Index j = 0; j < reference.raw_px.cols(); ++j) {
     const Vector2d center = reference.raw_px.col(j).array().round();
-    all.patches.push_back(make_patch_template(make_patch(
-        soft, cv::Point(static_cast<int>(center.x()), static_cast<int>(center.y())), half)));
-    all.nodes_px.push_back(patch_nodes(camera, center, half));
+    all.patches.push_back(make_patch_template(
+        make_patch(soft,
+                   cv::Point(static_cast<int>(center.x()), static_cast<int>(center.y())),
+                   kHalfPatch_px)));
+    all.nodes_px.push_back(patch_nodes(camera, center));
     all.undistorted_px.col(j) = undistort(camera, reference.raw_px.col(j));
     all.corners_px.col(j) -= center;
   }
@@ -132,7 +132,7 @@ Matrix2Xd found_by(const Patches& patches,
   const SearchOptions options = anchor_options(camera).search;
   Matrix2Xd found = Matrix2Xd::Constant(2, patches.undistorted_px.cols(), kNotFound);
   for (Eigen::Index j = 0; j < found.cols(); ++j) {
-    const auto warp = warp_by(camera, H, patches.nodes_px[j], kHalfPatch_px);
+    const auto warp = warp_by(camera, H, patches.nodes_px[j]);
     if (!warp || !is_inside(soft.size(), patches.patches[j].patch, *warp)) continue;
     const double area = warp->linear.determinant();
     if (area < kLeastArea || area > kMostArea) continue;

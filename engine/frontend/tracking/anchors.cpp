@@ -121,11 +121,8 @@ void take_shape(Step& step) {
     if (step.is_seen(j)) undistorted_px.col(j) = undistort(camera, step.aligned.raw_px.col(j));
   for (int j = 0; j < step.before_px.cols(); ++j) {
     if (!step.is_seen(j)) continue;
-    const Warp start = shaped(camera,
-                              step.anchors.warps[j],
-                              undistorted_px,
-                              step.options.half_patch_px,
-                              step.anchors.neighborhoods[j]);
+    const Warp start =
+        shaped(camera, step.anchors.warps[j], undistorted_px, step.anchors.neighborhoods[j]);
     const PatchTemplate& patch = step.anchors.patches[j];
     step.take(j, search(step.image, patch, start, MotionModel::shift, step.options.search));
   }
@@ -146,11 +143,11 @@ void lose_sliding_edges(Step& step) {
 }
 
 /// Returns the pixel at a place, or one whose patch is outside if it is far away or unknown.
-cv::Point pixel_at(const Vector2d& middle, const cv::Mat& image, int half) {
+cv::Point pixel_at(const Vector2d& middle, const cv::Mat& image) {
   const Vector2d size(image.cols, image.rows);
-  const bool near =
-      (middle.array() >= -half).all() && (middle.array() < (size.array() + half)).all();
-  if (!near) return {-half - 1, -half - 1};
+  const bool near = (middle.array() >= -kHalfPatch_px).all() &&
+                    (middle.array() < (size.array() + kHalfPatch_px)).all();
+  if (!near) return {-kHalfPatch_px - 1, -kHalfPatch_px - 1};
   return {static_cast<int>(middle.x()), static_cast<int>(middle.y())};
 }
 
@@ -162,20 +159,16 @@ AnchorOptions anchor_options(const Camera& camera) {
   return options;
 }
 
-Anchors make_anchors(const cv::Mat& image,
-                     const Matrix2Xd& raw_px,
-                     const Camera& camera,
-                     const AnchorOptions& options) {
-  const int half = options.half_patch_px;
+Anchors make_anchors(const cv::Mat& image, const Matrix2Xd& raw_px, const Camera& camera) {
   Anchors anchors{.camera = camera,
                   .patches = {},
                   .corners_px = raw_px,
-                  .neighborhoods = make_neighborhoods(camera, raw_px, half),
+                  .neighborhoods = make_neighborhoods(camera, raw_px),
                   .warps = {}};
   for (Eigen::Index j = 0; j < raw_px.cols(); ++j) {
     const Vector2d middle = raw_px.col(j).array().round();
     anchors.patches.push_back(
-        make_patch_template(make_patch(image, pixel_at(middle, image, half), half)));
+        make_patch_template(make_patch(image, pixel_at(middle, image), kHalfPatch_px)));
     anchors.corners_px.col(j) -= middle;
     anchors.warps.push_back({middle});
   }

@@ -27,7 +27,7 @@ constexpr double kMiddleWeight = 100;  // weight of the template's middle; that 
 constexpr double kUnit_px = 100;       // scales the monomials
 constexpr std::array kCorners{0, 2, 6, 8};  // node indices
 
-Vector2d node(int k, int half) { return {half * (k % 3 - 1), half * (k / 3 - 1)}; }
+Vector2d node(int k) { return {kHalfPatch_px * (k % 3 - 1), kHalfPatch_px * (k / 3 - 1)}; }
 
 /// Homography that keeps d = 0 finite (15b): (1 + v.d) p = A d + c.
 struct LocalHomography {
@@ -139,9 +139,9 @@ GPO_AVX2_FMA void add_moments_avx2_fma(const LocalHomography& H,
   add_moments(H, around, places, agreement_px, moments);
 }
 
-Warp through(const Nodes& nodes_px, const Vector2d& center_px, int half) {
+Warp through(const Nodes& nodes_px, const Vector2d& center_px) {
   const auto n = [&](int k) { return nodes_px.col(k); };
-  const double h = half;
+  constexpr double h = kHalfPatch_px;
   Warp warp{center_px};
   warp.linear << (n(5) - n(3)) / (2 * h), (n(7) - n(1)) / (2 * h);
   warp.quadratic << (n(5) + n(3) - 2 * n(4)) / (2 * h * h),
@@ -151,9 +151,7 @@ Warp through(const Nodes& nodes_px, const Vector2d& center_px, int half) {
 
 }  // namespace
 
-std::vector<Neighborhood> make_neighborhoods(const Camera& camera,
-                                             const Matrix2Xd& raw_px,
-                                             int half) {
+std::vector<Neighborhood> make_neighborhoods(const Camera& camera, const Matrix2Xd& raw_px) {
   Matrix2Xd undistorted_px(2, raw_px.cols());
   std::vector<int> known;
   for (int j = 0; j < raw_px.cols(); ++j) {
@@ -178,21 +176,18 @@ std::vector<Neighborhood> make_neighborhoods(const Camera& camera,
       around.dy[k] = (undistorted_px(1, near[k]) - origin.y()) / kUnit_px;
     }
     around.neighbors = std::move(near);
-    around.nodes_px = patch_nodes(camera, middle, half).colwise() - origin;
+    around.nodes_px = patch_nodes(camera, middle).colwise() - origin;
   }
   return all;
 }
 
-Nodes patch_nodes(const Camera& camera, const Vector2d& middle_px, int half) {
+Nodes patch_nodes(const Camera& camera, const Vector2d& middle_px) {
   Nodes nodes;
-  for (int k = 0; k < 9; ++k) nodes.col(k) = undistort(camera, middle_px + node(k, half));
+  for (int k = 0; k < 9; ++k) nodes.col(k) = undistort(camera, middle_px + node(k));
   return nodes;
 }
 
-std::optional<Warp> warp_by(const Camera& camera,
-                            const Matrix3d& H,
-                            const Nodes& nodes_px,
-                            int half) {
+std::optional<Warp> warp_by(const Camera& camera, const Matrix3d& H, const Nodes& nodes_px) {
   Nodes there;
   const double sign = H.row(2).dot(nodes_px.col(4).homogeneous());
   for (int k = 0; k < 9; ++k) {
@@ -201,21 +196,20 @@ std::optional<Warp> warp_by(const Camera& camera,
     there.col(k) = distort(camera, p.hnormalized());
   }
   if (!there.allFinite()) return std::nullopt;
-  const Warp warp = through(there, there.col(4), half);
+  const Warp warp = through(there, there.col(4));
   return warp.linear.determinant() > 0 ? std::optional(warp) : std::nullopt;
 }
 
 Warp shaped(const Camera& camera,
             const Warp& warp,
             const Matrix2Xd& undistorted_px,
-            int half,
             const Neighborhood& around) {
   const Vector2d origin = undistort(camera, warp.center);
   // The template's middle has a large weight, or neighbors on another surface would outvote it.
   Moments own = Moments::Zero();
   own(0, 0) = kMiddleWeight;
   for (const int k : kCorners) {
-    const Vector2d p = (undistort(camera, warp(node(k, half))) - origin) / kUnit_px;
+    const Vector2d p = (undistort(camera, warp(node(k))) - origin) / kUnit_px;
     own += monomials(around.nodes_px.col(k) / kUnit_px) *
            Eigen::RowVector4d(1, p.x(), p.y(), p.squaredNorm());
   }
@@ -233,7 +227,7 @@ Warp shaped(const Camera& camera,
   Nodes nodes;
   for (int k = 0; k < 9; ++k)
     nodes.col(k) = distort(camera, origin + kUnit_px * H(around.nodes_px.col(k) / kUnit_px));
-  return nodes.allFinite() ? through(nodes, warp.center, half) : warp;
+  return nodes.allFinite() ? through(nodes, warp.center) : warp;
 }
 
 double patch_unit(const Camera& camera) { return std::max(1.0, pixel_unit(camera)); }

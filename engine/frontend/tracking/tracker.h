@@ -15,6 +15,8 @@
 
 namespace gpo {
 
+inline constexpr int kHalfPatch_px = 10;  ///< half the side of a template of a track
+
 /// A template's pixels at left, middle and right of its first, middle and last row; 2 x 9, by row.
 using Nodes = Eigen::Matrix<double, 2, 9>;
 
@@ -28,20 +30,15 @@ struct Neighborhood {
 };
 
 /// Returns the neighborhood of each track. `raw_px` is 2 x tracks, in the reference frame;
-/// templates reach `half` pixels around the nearest whole pixel.
-std::vector<Neighborhood> make_neighborhoods(const Camera& camera,
-                                             const Eigen::Matrix2Xd& raw_px,
-                                             int half);
+/// templates are around the nearest whole pixel.
+std::vector<Neighborhood> make_neighborhoods(const Camera& camera, const Eigen::Matrix2Xd& raw_px);
 
-/// Returns the nodes of a template of `half` pixels around a whole raw pixel, undistorted [px].
-Nodes patch_nodes(const Camera& camera, const Eigen::Vector2d& middle_px, int half);
+/// Returns the nodes of a template around a whole raw pixel, undistorted [px].
+Nodes patch_nodes(const Camera& camera, const Eigen::Vector2d& middle_px);
 
 /// Returns the warp in raw pixels of a template with these nodes under a homography of undistorted
 /// pixels. Returns nullopt if the lens cannot show a node, or the template would be mirrored.
-std::optional<Warp> warp_by(const Camera& camera,
-                            const Eigen::Matrix3d& H,
-                            const Nodes& nodes_px,
-                            int half);
+std::optional<Warp> warp_by(const Camera& camera, const Eigen::Matrix3d& H, const Nodes& nodes_px);
 
 /// Returns the warp with its center unchanged and the shape that a homography and the lens give the
 /// template. The homography is fitted robustly to the warped corners of the template and to the
@@ -50,11 +47,9 @@ std::optional<Warp> warp_by(const Camera& camera,
 Warp shaped(const Camera& camera,
             const Warp& warp,
             const Eigen::Matrix2Xd& undistorted_px,
-            int half,
             const Neighborhood& neighborhood);
 
 struct AnchorOptions {
-  int half_patch_px = 10;    ///< half the side of a template, in the reference image [px]
   int least_alike = 5;       ///< least number of neighbors that move as a track does [-]
   double most_unlike = 0.5;  ///< largest difference of motions that are alike, as a share of the
                              ///< neighbors' motion; at least `search.farthest_px` [-]
@@ -78,10 +73,7 @@ struct Anchors {
 
 /// Makes the templates. `image` is the smoothed reference image; `raw_px`, 2 x
 /// tracks, its corners in raw pixels.
-Anchors make_anchors(const cv::Mat& image,
-                     const Eigen::Matrix2Xd& raw_px,
-                     const Camera& camera,
-                     const AnchorOptions& options = {});
+Anchors make_anchors(const cv::Mat& image, const Eigen::Matrix2Xd& raw_px, const Camera& camera);
 
 /// Tracks in the next image.
 struct FollowedTracks {

@@ -205,7 +205,7 @@ TEST(Anchors, FollowTheNeighborsInsteadOfJumping) {
   flow.col(14) << 16, 0;
   const auto motion_px = [&](const AnchorOptions& options) -> Eigen::Matrix2Xd {
     const cv::Mat smoothed = smooth_image(gray);
-    Anchors anchors = make_anchors(smoothed, corners, camera, options);
+    Anchors anchors = make_anchors(smoothed, corners, camera);
     return align_tracks(anchors, smoothed, corners, flow, options).raw_px - corners;
   };
   EXPECT_LT(motion_px({}).cwiseAbs().maxCoeff(), 0.01);

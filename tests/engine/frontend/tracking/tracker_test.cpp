@@ -160,7 +160,7 @@ TEST(Without, HidesTracksAndKeepsColumns) {
   }
 }
 
-constexpr int kHalf = 10;
+constexpr int kHalf = kHalfPatch_px;
 constexpr auto kRadial = Distortion::radial_tangential;
 const Camera kCamera{640, 480, 498.2, 497.6, 322.4, 238.1, kRadial, {0.092, -0.184, 6e-4, -9e-4}};
 
@@ -213,13 +213,13 @@ TEST(LocalShape, MatchesHomographyAndLensOfAPlane) {
   Matrix2Xd now(2, places.cols());
   for (int j = 0; j < places.cols(); ++j)
     now.col(j) = undistort(kCamera, carried(H, places.col(j)));
-  auto around = make_neighborhoods(kCamera, places, kHalf);
+  auto around = make_neighborhoods(kCamera, places);
   int better = 0;
   for (int j = 0; j < places.cols(); ++j) {
     const Vector2d middle = places.col(j);
     const Warp affine = affine_warp(H, middle);
     if (!now.col(j).allFinite() || !in_image(affine.center)) continue;
-    const Warp shape = shaped(kCamera, affine, now, kHalf, around[j]);
+    const Warp shape = shaped(kCamera, affine, now, around[j]);
     EXPECT_EQ(shape.center, affine.center);
     EXPECT_LT(worst_px(shape, H, middle), 0.02) << middle.transpose();
     better += worst_px(affine, H, middle) > 0.03 ? 1 : 0;
@@ -231,7 +231,7 @@ TEST(LocalShape, MatchesHomographyAndLensOfAPlane) {
 TEST(LocalShape, IgnoresNeighborsOnAnotherSurface) {
   constexpr int kFrames = 10;
   const Matrix2Xd places = grid();
-  auto around = make_neighborhoods(kCamera, places, kHalf);
+  auto around = make_neighborhoods(kCamera, places);
   for (int frame = 1; frame <= kFrames; ++frame) {
     const double part = static_cast<double>(frame) / kFrames;
     const Matrix3d H[] = {homography(1, part), homography(0.7, part)};
@@ -244,7 +244,7 @@ TEST(LocalShape, IgnoresNeighborsOnAnotherSurface) {
       const Vector2d middle = places.col(j);
       const Warp affine = affine_warp(own, middle);
       if (!now.col(j).allFinite() || !in_image(affine.center)) continue;
-      const Warp shape = shaped(kCamera, affine, now, kHalf, around[j]);
+      const Warp shape = shaped(kCamera, affine, now, around[j]);
       EXPECT_LT(worst_px(shape, own, middle), 0.05 + 0.5 * worst_px(affine, own, middle))
           << frame << ": " << j;
     }
@@ -255,9 +255,9 @@ TEST(LocalShape, IsTheTemplatesOwnWithoutNeighbors) {
   Matrix2Xd alone(2, 1);
   alone << 200, 150;
   const Warp warp = affine_warp(homography(1), alone.col(0));
-  auto around = make_neighborhoods(kCamera, alone, kHalf);
+  auto around = make_neighborhoods(kCamera, alone);
   EXPECT_TRUE(around[0].neighbors.empty());
-  const Warp shape = shaped(kCamera, warp, alone, kHalf, around[0]);
+  const Warp shape = shaped(kCamera, warp, alone, around[0]);
   for (const Vector2d& d : {Vector2d(-10, 10), Vector2d(10, 10), Vector2d(0, -10)})
     EXPECT_LT((shape(d) - warp(d)).norm(), 0.01);
 }
