@@ -95,10 +95,8 @@ ArrayXd squared_errors(const Matrix3d& H, const Pairs& pairs) {
 }
 
 double motion_px(const Pairs& pairs) {
-  std::vector<double> lengths;
-  for (Eigen::Index k = 0; k < pairs.from.cols(); ++k)
-    lengths.push_back((pairs.to.col(k) - pairs.from.col(k)).norm());
-  return median(std::move(lengths));
+  const Eigen::RowVectorXd lengths = (pairs.to - pairs.from).colwise().norm();
+  return median({lengths.begin(), lengths.end()});
 }
 
 /// The frame with the largest median motion among those that see half of all tracks; else 0.

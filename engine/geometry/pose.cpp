@@ -78,11 +78,8 @@ Eigen::Vector3d operator*(const Similarity& T_ab, const Eigen::Vector3d& x_b) {
 
 Similarity align(const Eigen::Matrix3Xd& from, const Eigen::Matrix3Xd& to) {
   const Eigen::Matrix4d T = Eigen::umeyama(from, to, true);
-  Similarity similarity;
-  similarity.scale = std::cbrt(T.topLeftCorner<3, 3>().determinant());
-  similarity.R_ab = T.topLeftCorner<3, 3>() / similarity.scale;
-  similarity.t_ab = T.topRightCorner<3, 1>();
-  return similarity;
+  const double scale = std::cbrt(T.topLeftCorner<3, 3>().determinant());
+  return {scale, T.topLeftCorner<3, 3>() / scale, T.topRightCorner<3, 1>()};
 }
 
 Alignment determined_alignment(const Eigen::Matrix3Xd& path, double reference_length) {

@@ -297,13 +297,10 @@ CameraMotion camera_motion(const Trajectory& trajectory, double seconds) {
   const Eigen::Vector3d rate(R.col(2).dot(y_rate), R.col(0).dot(z.rate), R.col(1).dot(x.rate));
   const Eigen::Matrix3d R_roll =
       Eigen::AngleAxisd(roll[0](0), Eigen::Vector3d::UnitZ()).toRotationMatrix();
-
-  CameraMotion motion;
-  motion.pose = {R * R_roll, position[0]};
-  motion.velocity_w = position[1];
-  motion.acceleration_w = position[2];
-  motion.rate_c = R_roll.transpose() * rate + Eigen::Vector3d(0, 0, roll[1](0));
-  return motion;
+  return {.pose = {R * R_roll, position[0]},
+          .velocity_w = position[1],
+          .acceleration_w = position[2],
+          .rate_c = R_roll.transpose() * rate + Eigen::Vector3d(0, 0, roll[1](0))};
 }
 
 BodyMotion body_motion(const Trajectory& trajectory, const Pose& T_body_camera, double seconds) {
@@ -319,14 +316,12 @@ BodyMotion body_motion(const Trajectory& trajectory, const Pose& T_body_camera, 
   const Eigen::Vector3d acceleration_w =
       camera.acceleration_w +
       camera.pose.R_wc * (rate_change_c.cross(lever_c) + camera.rate_c.cross(spin_c));
-
-  BodyMotion body;
-  body.pose = camera.pose * T_camera_body;
-  body.velocity_w = camera.velocity_w + camera.pose.R_wc * spin_c;
-  body.rate_b = T_body_camera.R_wc * camera.rate_c;
-  body.specific_force_b =
-      body.pose.R_wc.transpose() * (acceleration_w + Eigen::Vector3d(0, 0, 9.81));
-  return body;
+  const Pose pose = camera.pose * T_camera_body;
+  return {
+      .pose = pose,
+      .velocity_w = camera.velocity_w + camera.pose.R_wc * spin_c,
+      .rate_b = T_body_camera.R_wc * camera.rate_c,
+      .specific_force_b = pose.R_wc.transpose() * (acceleration_w + Eigen::Vector3d(0, 0, 9.81))};
 }
 
 bool has_desk(const Recipe& recipe) { return recipe.desk.size.x() > 0; }

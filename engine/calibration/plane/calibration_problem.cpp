@@ -256,16 +256,14 @@ void CalibrationProblem::evaluate(std::vector<double>& residuals, ceres::CRSMatr
 }
 
 Camera camera_of(const LensVector& lens, int width, int height) {
-  Camera camera;
-  camera.width = width;
-  camera.height = height;
-  camera.fx = width * std::exp(lens[0] - 0.5 * lens[1]);
-  camera.fy = width * std::exp(lens[0] + 0.5 * lens[1]);
-  camera.cx = 0.5 * (width - 1) + width * lens[2];
-  camera.cy = 0.5 * (height - 1) + width * lens[3];
-  camera.distortion = Distortion::radial_tangential;
-  camera.coefficients = {lens[4], lens[5], lens[6], lens[7]};
-  return camera;
+  return {.width = width,
+          .height = height,
+          .fx = width * std::exp(lens[0] - 0.5 * lens[1]),
+          .fy = width * std::exp(lens[0] + 0.5 * lens[1]),
+          .cx = 0.5 * (width - 1) + width * lens[2],
+          .cy = 0.5 * (height - 1) + width * lens[3],
+          .distortion = Distortion::radial_tangential,
+          .coefficients = {lens[4], lens[5], lens[6], lens[7]}};
 }
 
 LensVector lens_of(const Camera& camera) {
