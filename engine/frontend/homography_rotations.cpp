@@ -29,10 +29,9 @@ constexpr double kClearlyApart = 2;     // ratio of rotation errors that resolve
 constexpr double kFullParallax = 0.15;  // |tau| from which on a decomposition has full weight
 
 struct Pair {
-  int i;
   int j;
-  Matrix3d H_ji;                          // Euclidean: rays of i to rays of j, any scale
-  std::vector<HomographyMotion> motions;  // from i to j; empty if the camera hardly moved
+  Matrix3d H_ji;                          // Euclidean: rays of frame i to rays of j, any scale
+  std::vector<HomographyMotion> motions;  // from frame i to j; empty if the camera hardly moved
 };
 
 std::optional<Pair> decompose_pair(const Window& window, int i, int j) {
@@ -47,8 +46,7 @@ std::optional<Pair> decompose_pair(const Window& window, int i, int j) {
   const Matrix3d start = window.H_i1[j] * window.H_i1[i].inverse();
   if (!start.allFinite()) return std::nullopt;
   const Matrix3d H = refine_homography(start, from, to);
-  return Pair{.i = i,
-              .j = j,
+  return Pair{.j = j,
               .H_ji = window.K.inverse() * H * window.K,
               .motions = decompose_homography(H, window.K, from)};
 }
