@@ -7,8 +7,6 @@
 #include "engine/methods/initializers.h"
 #include "engine/methods/joint/joint_solution.h"
 #include "engine/methods/joint/joint_uncertainty.h"
-#include "engine/methods/known_shutter.h"
-#include "engine/methods/plane/gyro_bias.h"
 #include "engine/methods/plane/linear_solutions.h"
 #include "engine/methods/plane/plane_result.h"
 #include "engine/methods/plane/plane_solver.h"
@@ -17,6 +15,8 @@
 
 #include <cmath>
 #include <limits>
+
+#include <fmt/format.h>
 
 namespace gpo {
 namespace {
@@ -29,6 +29,40 @@ constexpr Rounds kStartRounds{2};  // for candidate starts
 constexpr double kWorthFreeRotations = 1.25;
 /// The same after one round of reweighting.
 constexpr double kMayBeWorth = 1.1;
+
+/// Largest plausible gyroscope bias, absolute and relative to its prior.
+constexpr double kMostBias_rad_s = 0.5;
+constexpr double kMostBiasSigmas = 6;
+
+/// Returns the window with the gyroscope's rotations before its calibration from the images, which
+/// may have selected the wrong one of a plane's two decompositions. nullopt without one.
+std::optional<Window> with_prior_bias(const Window& window) {
+  if (window.rotations != RotationModel::bias) return std::nullopt;
+  const GyroSensitivity& gyro = *window.gyro;
+  if (gyro.bias_rad_s == gyro.prior_rad_s) return std::nullopt;
+  Window raw = window;
+  PlaneMotion prior;
+  prior.bias_rad_s = gyro.prior_rad_s;
+  for (int i = 0; i < window.frame_count(); ++i)
+    raw.R_wc[i] = window.R_wc[i] * so3_exp(gyro_correction_rad(window, i, prior));
+  return raw;
+}
+
+/// Returns why the estimated bias of the gyroscope shows a wrong minimum; empty if it does not.
+std::string why_implausible_bias(const Window& window, const PlaneMotion& motion) {
+  if (window.rotations != RotationModel::bias) return "";
+  const GyroSensitivity& gyro = *window.gyro;
+  const double bias_rad_s = motion.bias_rad_s.norm();
+  if (bias_rad_s > kMostBias_rad_s)
+    return fmt::format("wrong minimum: estimated gyroscope bias {:.2f} rad/s", bias_rad_s);
+  const double sigmas = (motion.bias_rad_s - gyro.prior_rad_s).norm() / gyro.prior_sigma_rad_s;
+  if (sigmas < kMostBiasSigmas) return "";
+  return fmt::format(
+      "wrong minimum: estimated gyroscope bias {:.3f} rad/s, {:.0f} standard deviations from its "
+      "prior",
+      bias_rad_s,
+      sigmas);
+}
 
 /// Compares a fit with free rotations, in which the gyroscope no longer selects one of the plane's
 /// two decompositions, with the fit from its twin.
@@ -166,13 +200,55 @@ void take(const joint::Solution& joint, const Window& window, Fit& fit) {
   fit.observations = std::move(moved);
 }
 
+PlaneMotion motion_of(const Initialization& result) {
+  PlaneMotion motion = gpo::motion_of(result.plane, result.cameras);
+  for (std::size_t k = 1; k < result.planes.size(); ++k) {
+    const auto& [normal, distance] = result.planes[k].plane;
+    motion.others.push_back({result.planes[k].number, normal / distance});
+  }
+  return motion;
+}
+
+/// Returns the result for the window corrected for its own `row_delay`, whose standard deviation
+/// adds to all uncertainties.
+Initialization initialize_at_row_delay(const Window& window,
+                                       const MethodOptions& options,
+                                       const Watch& watch) {
+  constexpr int kCorrections = 2;  // the correction depends on the motion, and vice versa
+  const RowDelayPrior& delay = *window.row_delay;
+  MethodOptions global = options;
+  global.shutter = Shutter::global;
+  if (delay.mean_s == 0 && delay.sigma_s == 0) return initialize_gpo_joint(window, global, watch);
+  PlaneMotion motion = facing(window, solve_gpo(window, {}, watch).motion);
+  if (options.planes == Planes::all && window.planes.size() > 1)
+    motion.others = other_planes(window, motion);
+  RotationModel rotations = window.rotations;
+  Initialization result;
+  for (int round = 0; round < kCorrections; ++round) {
+    Window corrected = without_rolling_shutter(window, motion, rotations, delay);
+    refine_homographies(corrected);
+    Initialization next = initialize_gpo_joint(corrected, global, watch);
+    add_effort(result.solver, next.solver);
+    result = std::move(next);
+    if (!result.ok) return result;
+    motion = motion_of(result);
+    if (result.uncertainty) rotations = result.uncertainty->rotations;
+  }
+  if (delay.mean_s != 0) result.row_delay_s = delay.mean_s;
+  if (result.uncertainty) result.uncertainty->row_delay_sigma_s = delay.sigma_s;
+  return result;
+}
+
 }  // namespace
 
 Initialization initialize_gpo_joint(const Window& window,
                                     const MethodOptions& options,
                                     const Watch& watch) {
-  if (!options.time_offset && gyro_unknowns(window, window.rotations) > 3)
-    return initialize_gpo_joint(with_exact_clock(window), options, watch);
+  if (!options.time_offset && gyro_unknowns(window, window.rotations) > 3) {
+    Window exact_clock = window;
+    exact_clock.gyro->time_offset_sigma_s = 0;
+    return initialize_gpo_joint(exact_clock, options, watch);
+  }
   if (auto reason = reason_not_to_try(window)) return failed(*reason);
   const FitTask task{window, options, homography_error_px(window) / kMedianOfRayleigh, watch};
   if (options.shutter == Shutter::known && window.row_delay && !task.latent())
