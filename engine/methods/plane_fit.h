@@ -3,7 +3,7 @@
 #pragma once
 
 #include "engine/methods/common/method_options.h"
-#include "engine/methods/plane/plane_problem.h"
+#include "engine/methods/plane/plane_motion.h"
 #include "engine/methods/plane/plane_solver.h"
 #include "engine/window/window.h"
 

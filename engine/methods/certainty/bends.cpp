@@ -257,11 +257,8 @@ void widen_by_systematic_errors(const SolvedPlanes& solved,
   const auto information = inverse_information(Y);
   if (!information) return;
   SharedMatrix wide = *information / ratio;
-  for (int k = 0; k < gyro; ++k) {
-    const GyroSensitivity& prior = *solved.window.gyro;
-    const double sigma = k < 3 ? prior.prior_sigma_rad_s : prior.time_offset_sigma_s;
-    wide(k, k) = less((*information)(k, k), sigma);
-  }
+  const GyroVector prior_sigmas = gyro_prior_sigmas(solved.window, gyro);
+  for (int k = 0; k < gyro; ++k) wide(k, k) = less((*information)(k, k), prior_sigmas(k));
   const auto widened = inverse_information(wide);
   if (!widened) return;
   const SharedMatrix by_shared = *widened - Y;

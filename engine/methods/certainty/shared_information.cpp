@@ -37,12 +37,9 @@ SharedInformation prior_information(const Window& window,
                                     const UnknownsLayout& layout,
                                     double sigma_px) {
   SharedInformation prior = SharedInformation::Zero(layout.size(), layout.size());
-  const int gyro = layout.of_gyro();
-  if (layout.gyro > 0)
-    prior.diagonal().segment<3>(gyro).setConstant(
-        prior_weight(sigma_px, window.gyro->prior_sigma_rad_s));
-  if (layout.gyro > 3)
-    prior(gyro + 3, gyro + 3) = prior_weight(sigma_px, window.gyro->time_offset_sigma_s);
+  const GyroVector sigmas = gyro_prior_sigmas(window, layout.gyro);
+  for (int k = 0; k < layout.gyro; ++k)
+    prior(layout.of_gyro() + k, layout.of_gyro() + k) = prior_weight(sigma_px, sigmas(k));
   return prior;
 }
 

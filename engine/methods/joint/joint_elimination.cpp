@@ -1,11 +1,9 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
 // Eliminates the latent positions, and substitutes them back into a step.
-#include "engine/geometry/pose.h"
 #include "engine/methods/joint/joint_model.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include <Eigen/Cholesky>
 
@@ -13,9 +11,7 @@ namespace gpo::joint {
 
 using Eigen::Index;
 using Eigen::Matrix2d;
-using Eigen::Matrix3d;
 using Eigen::Vector2d;
-using Eigen::Vector3d;
 using Eigen::VectorXd;
 
 void Model::eliminate_latent_positions(Normals& all) const {
@@ -41,30 +37,12 @@ void Model::eliminate_latent_positions(Normals& all) const {
 
 State Model::moved(const State& from, const VectorXd& x, const Normals& at) const {
   State to = from;
-  PlaneMotion& motion = to.motion;
-  motion.normal = moved_normal(motion.normal, x.head<2>());
-  for (int k = 1; k < layout_.planes; ++k) {
-    Vector3d& m = motion.others[k - 1].m;
-    const Vector3d u_s = x.segment<3>(UnknownsLayout::of_plane(k));
-    const double length = m.norm();
-    m = length * std::exp(u_s(2)) * moved_normal(m / length, u_s.head<2>());
-  }
-  const Index gyro = layout_.shared.of_gyro();
-  if (layout_.shared.gyro > 0) motion.bias_rad_s += x.segment<3>(gyro);
-  if (layout_.shared.gyro == 4) motion.time_offset_s += x(gyro + 3);
+  move_shared(layout_.shared, x.head(layout_.shared.size()), to.motion);
   if (layout_.row_delay > 0) to.row_delay_s += x(layout_.at_row_delay());
   if (layout_.lens > 0) to.lens += x.segment<kLensTerms>(layout_.at_lens());
-  for (int i = 1; i < layout_.frames; ++i) {
-    motion.tau[i] += from.motion.R_wc[i] * x.segment<3>(layout_.at_translation(i));
-    if (layout_.own == 6) {
-      const Matrix3d turn = so3_exp(x.segment<3>(layout_.at_frame(i)));
-      if (options_.gyro_noise)
-        motion.gyro_noise_rad[i] = so3_log(so3_exp(motion.gyro_noise_rad[i]) * turn);
-      else
-        motion.R_wc[i] = motion.R_wc[i] * turn;
-    }
-    if (layout_.shared.gyro > 0) motion.R_wc[i] = gyro_rotation(window_, i, motion);
-  }
+  for (int i = 1; i < layout_.frames; ++i)
+    move_frame(
+        window_, layout_.shared.gyro, i, x.segment(layout_.at_frame(i), layout_.own), to.motion);
   const Index count = std::ssize(tracks_);
   for (Index j = 0; j < count; ++j) {
     Vector2d pull = at.v[j];

@@ -47,13 +47,10 @@ Priors Model::priors(const State& state, const Scales& scales, Priors all) const
     all.cost += 0.5 * weight * error * error;
   };
   const PlaneMotion& motion = state.motion;
-  const Index gyro = layout_.shared.of_gyro();
-  for (int axis = 0; layout_.shared.gyro > 0 && axis < 3; ++axis)
-    add(gyro + axis,
-        window_.gyro->prior_sigma_rad_s,
-        motion.bias_rad_s(axis) - window_.gyro->prior_rad_s(axis));
-  if (layout_.shared.gyro == 4)
-    add(gyro + 3, window_.gyro->time_offset_sigma_s, motion.time_offset_s);
+  const GyroVector sigmas = gyro_prior_sigmas(window_, layout_.shared.gyro);
+  const GyroVector errors = gyro_prior_errors(window_, layout_.shared.gyro, motion);
+  for (int k = 0; k < layout_.shared.gyro; ++k)
+    add(layout_.shared.of_gyro() + k, sigmas(k), errors(k));
   if (layout_.row_delay > 0)
     add(layout_.at_row_delay(),
         options_.row_delay->sigma_s,

@@ -110,6 +110,51 @@ GyroColumns gyro_columns(const Window& window, const PlaneMotion& motion, int fr
   return columns;
 }
 
+GyroVector gyro_prior_sigmas(const Window& window, int unknowns) {
+  if (unknowns == 0) return {};
+  GyroVector sigmas = GyroVector::Constant(unknowns, window.gyro->prior_sigma_rad_s);
+  if (unknowns == 4) sigmas(3) = window.gyro->time_offset_sigma_s;
+  return sigmas;
+}
+
+GyroVector gyro_prior_errors(const Window& window, int unknowns, const PlaneMotion& motion) {
+  if (unknowns == 0) return {};
+  Eigen::Vector4d errors;
+  errors << motion.bias_rad_s - window.gyro->prior_rad_s, motion.time_offset_s;
+  return errors.head(unknowns);
+}
+
+void move_shared(const UnknownsLayout& layout,
+                 const Eigen::Ref<const Eigen::VectorXd>& step,
+                 PlaneMotion& motion) {
+  motion.normal = moved_normal(motion.normal, step.head<2>());
+  for (int k = 0; k < layout.others; ++k) {
+    Eigen::Vector3d& m = motion.others[k].m;
+    const Eigen::Vector3d u_s = step.segment<3>(UnknownsLayout::of_plane(k + 1));
+    const double length = m.norm();
+    m = length * std::exp(u_s(2)) * moved_normal(m / length, u_s.head<2>());
+  }
+  if (layout.gyro > 0) motion.bias_rad_s += step.segment<3>(layout.of_gyro());
+  if (layout.gyro == 4) motion.time_offset_s += step(layout.of_gyro() + 3);
+}
+
+void move_frame(const Window& window,
+                int gyro,
+                int frame,
+                const Eigen::Ref<const Eigen::VectorXd>& step,
+                PlaneMotion& motion) {
+  Eigen::Matrix3d& R_wc = motion.R_wc[frame];
+  motion.tau[frame] += R_wc * step.tail<3>();
+  if (step.size() == 6) {
+    const Eigen::Matrix3d turn = so3_exp(step.head<3>());
+    if (motion.gyro_noise_rad.empty())
+      R_wc = R_wc * turn;
+    else
+      motion.gyro_noise_rad[frame] = so3_log(so3_exp(motion.gyro_noise_rad[frame]) * turn);
+  }
+  if (gyro > 0) R_wc = gyro_rotation(window, frame, motion);
+}
+
 PlaneColumns plane_columns(int plane, const Eigen::Vector3d& tau_c, const GyroColumns& gyro) {
   const int size = UnknownsLayout::size_of_plane(plane);
   PlaneColumns columns = PlaneColumns::Zero(8, size + gyro.cols());

@@ -115,6 +115,25 @@ using PlaneColumns = Eigen::Matrix<double, 8, Eigen::Dynamic, 0, 8, 7>;
 /// Returns dphi / d(gyroscope unknowns) of a frame; `unknowns` is their number.
 GyroColumns gyro_columns(const Window& window, const PlaneMotion& motion, int frame, int unknowns);
 
+/// Gyroscope unknowns: bias and time offset.
+using GyroVector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 4, 1>;
+/// Returns the standard deviations of the priors of the gyroscope's unknowns.
+GyroVector gyro_prior_sigmas(const Window& window, int unknowns);
+/// Returns the differences of the gyroscope's unknowns from the means of their priors.
+GyroVector gyro_prior_errors(const Window& window, int unknowns, const PlaneMotion& motion);
+
+/// Moves planes, bias and time offset by a step of the unknowns that all frames share.
+void move_shared(const UnknownsLayout& layout,
+                 const Eigen::Ref<const Eigen::VectorXd>& step,
+                 PlaneMotion& motion);
+/// Moves a frame by a step t, or (phi, t), of its own unknowns, after the shared ones. phi changes
+/// the gyroscope's noise if the motion has one. `gyro`: number of the gyroscope's unknowns.
+void move_frame(const Window& window,
+                int gyro,
+                int frame,
+                const Eigen::Ref<const Eigen::VectorXd>& step,
+                PlaneMotion& motion);
+
 /// Scaling m of a further plane, dm = m ds, has the effect of t = tau ds, because t is multiplied
 /// by m.x_1 (engine/method.md, eq. 7b).
 PlaneColumns plane_columns(int plane, const Eigen::Vector3d& tau_c, const GyroColumns& gyro);
