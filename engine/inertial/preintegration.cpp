@@ -13,6 +13,7 @@ namespace gpo {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 using Matrix9 = Eigen::Matrix<double, 9, 9>;
+using Vector6 = Eigen::Matrix<double, 6, 1>;
 
 namespace {
 
@@ -50,38 +51,29 @@ void advance(Preintegration& sum,
   const Matrix3d J_half = so3_right_jacobian(half_turn) * (0.5 * dt_s);
   const Matrix3d J_full = so3_right_jacobian(2 * half_turn) * dt_s;
   const Matrix3d R_half = sum.R * E;
-  const Matrix3d back = (E * E).transpose();
   const Matrix3d tilt = -R_half * skew(acceleration_m_s2);  // force by phi_half
-  const Matrix3d by_gyro = tilt * (E.transpose() * sum.R_by_gyro - J_half);
   const double half_dt2 = 0.5 * dt_s * dt_s;
 
-  // The 9 x 9 products of the covariance by their blocks; T is the derivative of the force by phi.
+  // A: derivative by the errors so far; B: by those of rate and acceleration.
   const Matrix3d T = tilt * E.transpose();
   const Matrix3d N = tilt * J_half;
   Matrix9 A = Matrix9::Identity();
-  A.block<3, 3>(0, 0) = back;
+  A.block<3, 3>(0, 0) = (E * E).transpose();
   A.block<3, 3>(3, 0) = T * dt_s;
   A.block<3, 3>(6, 0) = T * half_dt2;
   A.block<3, 3>(6, 3) = Matrix3d::Identity() * dt_s;
-  Eigen::Matrix<double, 9, 3> B;
-  B << J_full, N * dt_s, N * half_dt2;
-  const double q_gyro = noise.gyroscope * noise.gyroscope / dt_s;
-  const double q_acc = noise.accelerometer * noise.accelerometer / dt_s;
+  Eigen::Matrix<double, 9, 6> B;
+  B << J_full, Matrix3d::Zero(), N * dt_s, R_half * dt_s, N * half_dt2, R_half * half_dt2;
+  Vector6 q;
+  q.head<3>().setConstant(noise.gyroscope * noise.gyroscope / dt_s);
+  q.tail<3>().setConstant(noise.accelerometer * noise.accelerometer / dt_s);
   sum.covariance = (A * sum.covariance * A.transpose()).eval();
-  sum.covariance += q_gyro * B * B.transpose();
-  sum.covariance.block<3, 3>(3, 3).diagonal().array() += q_acc * dt_s * dt_s;
-  sum.covariance.block<3, 3>(3, 6).diagonal().array() += q_acc * dt_s * half_dt2;
-  sum.covariance.block<3, 3>(6, 3).diagonal().array() += q_acc * dt_s * half_dt2;
-  sum.covariance.block<3, 3>(6, 6).diagonal().array() += q_acc * half_dt2 * half_dt2;
+  sum.covariance += B * q.asDiagonal() * B.transpose();
+  sum.by_biases = (A * sum.by_biases).eval() - B;
 
   const Vector3d force = R_half * acceleration_m_s2;
   sum.position += sum.velocity * dt_s + force * half_dt2;
   sum.velocity += force * dt_s;
-  sum.p_by_gyro += sum.v_by_gyro * dt_s + by_gyro * half_dt2;
-  sum.v_by_gyro += by_gyro * dt_s;
-  sum.p_by_acc += sum.v_by_acc * dt_s - R_half * half_dt2;
-  sum.v_by_acc -= R_half * dt_s;
-  sum.R_by_gyro = back * sum.R_by_gyro - J_full;
   sum.R = R_half * E;
   sum.seconds += dt_s;
 }
@@ -89,9 +81,12 @@ void advance(Preintegration& sum,
 Preintegration with_biases_moved(Preintegration sum,
                                  const Vector3d& by_gyro_rad_s,
                                  const Vector3d& by_acc_m_s2) {
-  sum.R = sum.R * so3_exp(sum.R_by_gyro * by_gyro_rad_s);
-  sum.velocity += sum.v_by_gyro * by_gyro_rad_s + sum.v_by_acc * by_acc_m_s2;
-  sum.position += sum.p_by_gyro * by_gyro_rad_s + sum.p_by_acc * by_acc_m_s2;
+  Vector6 moved;
+  moved << by_gyro_rad_s, by_acc_m_s2;
+  const Eigen::Matrix<double, 9, 1> change = sum.by_biases * moved;
+  sum.R = sum.R * so3_exp(change.head<3>());
+  sum.velocity += change.segment<3>(3);
+  sum.position += change.tail<3>();
   return sum;
 }
 
@@ -158,10 +153,7 @@ std::vector<InertialFrame> inertial_path(std::span<const Preintegration> between
     to_world.block<3, 3>(0, 0) = b.R;
     to_world.block<3, 3>(3, 3) = a.R;
     to_world.block<3, 3>(6, 6) = a.R;
-    Eigen::Matrix<double, 9, 6> own;
-    own << step.R_by_gyro, Matrix3d::Zero(), step.v_by_gyro, step.v_by_acc, step.p_by_gyro,
-        step.p_by_acc;
-    b.by_biases = F * a.by_biases + to_world * own;
+    b.by_biases = F * a.by_biases + to_world * step.by_biases;
     b.covariance =
         F * a.covariance * F.transpose() + to_world * step.covariance * to_world.transpose();
   }

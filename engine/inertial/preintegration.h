@@ -25,19 +25,15 @@ struct ImuNoise {
 /// time, gravity included:
 ///   R_2 = R_1 R,   v_2 = v_1 + g dt + R_1 velocity,   p_2 = p_1 + v_1 dt + g dt^2 / 2 + R_1
 ///   position
-/// and for other biases, to first order,
-///   R exp(R_by_gyro db_g),   velocity + v_by_gyro db_g + v_by_acc db_a,   likewise position.
 struct Preintegration {
   double seconds = 0;
-  Eigen::Matrix3d R = Eigen::Matrix3d::Identity();      ///< axes at the end -> at the start
-  Eigen::Vector3d velocity = Eigen::Vector3d::Zero();   ///< [m/s]
-  Eigen::Vector3d position = Eigen::Vector3d::Zero();   ///< [m]
-  Eigen::Matrix3d R_by_gyro = Eigen::Matrix3d::Zero();  ///< [s]
-  Eigen::Matrix3d v_by_gyro = Eigen::Matrix3d::Zero();  ///< [m/s / (rad/s)]
-  Eigen::Matrix3d v_by_acc = Eigen::Matrix3d::Zero();   ///< [s]
-  Eigen::Matrix3d p_by_gyro = Eigen::Matrix3d::Zero();  ///< [m / (rad/s)]
-  Eigen::Matrix3d p_by_acc = Eigen::Matrix3d::Zero();   ///< [s^2]
-  /// Covariance of (phi, velocity, position), with R exp(phi).
+  Eigen::Matrix3d R = Eigen::Matrix3d::Identity();     ///< axes at the end -> at the start
+  Eigen::Vector3d velocity = Eigen::Vector3d::Zero();  ///< [m/s]
+  Eigen::Vector3d position = Eigen::Vector3d::Zero();  ///< [m]
+  /// Derivatives of (phi, velocity, position) by the biases of gyroscope and accelerometer, with
+  /// R exp(phi).
+  Eigen::Matrix<double, 9, 6> by_biases = Eigen::Matrix<double, 9, 6>::Zero();
+  /// Covariance of the same by white noise.
   Eigen::Matrix<double, 9, 9> covariance = Eigen::Matrix<double, 9, 9>::Zero();
 };
 
