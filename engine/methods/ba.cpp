@@ -79,7 +79,7 @@ std::optional<std::string> reason_of_too_few(const Window& window,
 }
 
 /// Returns the points of the remaining tracks in front of the camera, in the bundle's scale.
-std::vector<MapPoint> map_points(const Window& window, const RobustBundle& adjusted) {
+std::vector<MapPoint> map_points(const Window& window, const AdjustedBundle& adjusted) {
   std::vector<bool> kept(window.track_count(), false);
   for (const Observation& observation : adjusted.kept) kept[observation.point] = true;
   std::vector<MapPoint> points;
@@ -101,7 +101,7 @@ std::optional<Plane> plane_of_inliers(const Window& window, std::span<const MapP
 }
 
 /// World = reference camera, plane distance 1.
-Initialization result_of_bundle(const Window& window, const RobustBundle& adjusted) {
+Initialization result_of_bundle(const Window& window, const AdjustedBundle& adjusted) {
   std::vector<MapPoint> points = map_points(window, adjusted);
   const std::optional<Plane> plane = plane_of_inliers(window, points);
   if (!plane) return failed("the adjusted inlier points determine no plane", adjusted.solver);
@@ -117,17 +117,39 @@ Initialization result_of_bundle(const Window& window, const RobustBundle& adjust
   return result;
 }
 
+Initialization result_on_plane(const Window& window, const AdjustedBundle& adjusted) {
+  Initialization result;
+  result.plane = {adjusted.bundle.normal, 1};
+  result.cameras = adjusted.bundle.cameras;
+  for (int j = 0; j < window.track_count(); ++j) {
+    if (window.is_inlier_track(j))
+      result.points.push_back({j, position(window.K, adjusted.bundle.points.col(j))});
+  }
+  result.solver = adjusted.solver;
+  // An observation has two residuals.
+  result.rms_px = std::sqrt(4 * adjusted.solver.final_cost / adjusted.solver.residuals);
+  return result;
+}
+
+template <PlaneNormal normal>
+Initialization initialize_on_plane(const Window& window, const Watch& watch) {
+  const Refinement refine = [](const Window& w, const Initialization& start, const Watch& s) {
+    return refine_on_plane(w, start, normal, s);
+  };
+  return refined_start(window, {"DBSCAN", initialize_dbscan}, refine, watch);
+}
+
 }  // namespace
 
 Initialization refine_bundle(const Window& window,
                              const Initialization& start,
                              const Watch& watch) {
   const auto is_used = [&](int frame, int track) { return used(window, frame, track); };
-  const RobustBundle adjusted = adjust_bundle_robustly(window.K,
-                                                       start_bundle(window, start),
-                                                       track_observations(window, is_used),
-                                                       homography_error_px(window),
-                                                       watch);
+  const AdjustedBundle adjusted = adjust_bundle_robustly(window.K,
+                                                         start_bundle(window, start),
+                                                         track_observations(window, is_used),
+                                                         homography_error_px(window),
+                                                         watch);
   const SolverReport& solver = adjusted.solver;
   if (auto reason = reason_of_too_few(window, adjusted.kept)) return failed(*reason, solver);
   if (solver.termination != Termination::convergence) return not_converged(solver);
@@ -140,8 +162,32 @@ Initialization initialize_ba(const Window& window, const Watch& watch) {
   return refined_start(window, {"DBSCAN", initialize_dbscan}, refine_bundle, watch);
 }
 
+Initialization refine_on_plane(const Window& window,
+                               const Initialization& start,
+                               PlaneNormal normal,
+                               const Watch& watch) {
+  const auto is_inlier = [&](int frame, int track) { return bool{window.inlier[frame][track]}; };
+  const AdjustedBundle adjusted = adjust_bundle(
+      window.K,
+      bundle_on_plane(window.K, start.cameras, start.plane.normal, window.points_px[0]),
+      track_observations(window, is_inlier),
+      {.normal = normal},
+      watch);
+  if (adjusted.solver.termination != Termination::convergence)
+    return not_converged(adjusted.solver);
+  return trusted(window, result_on_plane(window, adjusted));
+}
+
 Initialization initialize_pnp_ba(const Window& window, const Watch& watch) {
   return refined_start(window, {"PnP", initialize_pnp}, refine_bundle, watch);
+}
+
+Initialization initialize_pba(const Window& window, const Watch& watch) {
+  return initialize_on_plane<PlaneNormal::free>(window, watch);
+}
+
+Initialization initialize_fpba(const Window& window, const Watch& watch) {
+  return initialize_on_plane<PlaneNormal::held>(window, watch);
 }
 
 }  // namespace gpo

@@ -36,34 +36,49 @@ constexpr int kLeastObservations = 3;
 /// does not.
 constexpr double kLeastAgreeing = 2.0 / 3.0;
 
-/// Residual p - p_observed of a free point; parameters (camera, point).
-class ObservationCost : public ceres::SizedCostFunction<2, 7, 3> {
+/// Residual p - p_observed; parameters (camera, reference pixel and inverse depth), or (camera,
+/// reference pixel, quaternion of the plane's normal).
+class ObservationCost : public ceres::CostFunction {
  public:
-  ObservationCost(const Intrinsics& intrinsics, const Vector2d& observed)
-      : intrinsics_(intrinsics), observed_(observed) {}
+  ObservationCost(const Intrinsics& intrinsics, const Vector2d& observed, bool on_plane)
+      : intrinsics_(intrinsics), observed_(observed), on_plane_(on_plane) {
+    set_num_residuals(2);
+    *mutable_parameter_block_sizes() = {7, on_plane ? 2 : 3};
+    if (on_plane) mutable_parameter_block_sizes()->push_back(4);
+  }
 
   bool Evaluate(const double* const* parameters,
                 double* residuals,
                 double** jacobians) const override {
-    const Eigen::Map<const Vector3d> point(parameters[1]);
+    const Eigen::Map<const Vector2d> pixel_1(parameters[1]);
+    const auto q_normal = [&] { return Eigen::Map<const Eigen::Quaterniond>(parameters[2]); };
+    std::optional<PlaneDepth> depth;
+    if (on_plane_) depth = depth_on_plane(intrinsics_, direction(q_normal()), pixel_1);
     const PointView view = view_point(intrinsics_,
                                       Eigen::Map<const Eigen::Quaterniond>(parameters[0]),
                                       Eigen::Map<const Vector3d>(parameters[0] + 4),
-                                      point.head<2>(),
-                                      point.z());
+                                      pixel_1,
+                                      depth ? depth->inverse_depth : parameters[1][2]);
     if (!view.in_front) return false;
-    write_residual(view, observed_, residuals, jacobians == nullptr ? nullptr : jacobians[0]);
+    Eigen::Map<Vector2d>{residuals} = view.pixel - observed_;
     if (jacobians == nullptr) return true;
-    if (jacobians[1] != nullptr) {
-      Eigen::Map<RowMajor<2, 3>> J(jacobians[1]);
-      J << view.d_pixel_1, view.d_inverse_depth;
-    }
+    if (jacobians[0] != nullptr)
+      Eigen::Map<RowMajor<2, 7>>{jacobians[0]} << view.d_rotation, view.d_position;
+    if (jacobians[1] != nullptr && !depth)
+      Eigen::Map<RowMajor<2, 3>>{jacobians[1]} << view.d_pixel_1, view.d_inverse_depth;
+    if (jacobians[1] != nullptr && depth)
+      Eigen::Map<RowMajor<2, 2>>{jacobians[1]} =
+          view.d_pixel_1 + view.d_inverse_depth * depth->d_pixel_1;
+    if (depth && jacobians[2] != nullptr)
+      Eigen::Map<RowMajor<2, 4>>{jacobians[2]} =
+          view.d_inverse_depth * (depth->d_normal * direction_jacobian(q_normal()));
     return true;
   }
 
  private:
   const Intrinsics& intrinsics_;
   Vector2d observed_;
+  bool on_plane_;
 };
 
 int widest_frame(std::span<const Pose> cameras) {
@@ -104,43 +119,6 @@ std::vector<Observation> without_outliers(const Matrix3d& K,
   return kept;
 }
 
-/// Residual p - p_observed of a point on the plane; parameters (camera, reference pixel, quaternion
-/// of the normal).
-class PlaneObservationCost : public ceres::SizedCostFunction<2, 7, 2, 4> {
- public:
-  PlaneObservationCost(const Intrinsics& intrinsics, const Vector2d& observed)
-      : intrinsics_(intrinsics), observed_(observed) {}
-
-  bool Evaluate(const double* const* parameters,
-                double* residuals,
-                double** jacobians) const override {
-    const Eigen::Map<const Vector2d> pixel_1(parameters[1]);
-    const Eigen::Map<const Eigen::Quaterniond> q_normal(parameters[2]);
-    const PlaneDepth depth = depth_on_plane(intrinsics_, direction(q_normal), pixel_1);
-    const PointView view = view_point(intrinsics_,
-                                      Eigen::Map<const Eigen::Quaterniond>(parameters[0]),
-                                      Eigen::Map<const Vector3d>(parameters[0] + 4),
-                                      pixel_1,
-                                      depth.inverse_depth);
-    if (!view.in_front) return false;
-    write_residual(view, observed_, residuals, jacobians == nullptr ? nullptr : jacobians[0]);
-    if (jacobians == nullptr) return true;
-    if (jacobians[1] != nullptr) {
-      Eigen::Map<RowMajor<2, 2>> J(jacobians[1]);
-      J = view.d_pixel_1 + view.d_inverse_depth * depth.d_pixel_1;
-    }
-    if (jacobians[2] != nullptr) {
-      Eigen::Map<RowMajor<2, 4>> J(jacobians[2]);
-      J = view.d_inverse_depth * (depth.d_normal * direction_jacobian(q_normal));
-    }
-    return true;
-  }
-
- private:
-  const Intrinsics& intrinsics_;
-  Vector2d observed_;
-};
-
 }  // namespace
 
 std::vector<Observation> track_observations(
@@ -177,38 +155,69 @@ std::vector<double> reprojection_errors_px(const Matrix3d& K,
   return errors;
 }
 
+Bundle bundle_on_plane(const Matrix3d& K,
+                       const std::vector<Pose>& cameras,
+                       const Vector3d& normal,
+                       const Eigen::Matrix2Xd& pixels_1) {
+  const Eigen::Matrix3Xd rays = K.inverse() * pixels_1.colwise().homogeneous();
+  Bundle bundle{cameras, Eigen::Matrix3Xd(3, rays.cols()), normal};
+  bundle.points << pixels_1, -normal.transpose() * rays;
+  return bundle;
+}
+
 AdjustedBundle adjust_bundle(const Matrix3d& K,
                              const Bundle& start,
                              std::span<const Observation> observations,
                              const AdjustmentOptions& options,
                              const Watch& watch) {
   const Intrinsics intrinsics{K, K.inverse()};
+  const bool on_plane = options.normal.has_value();
   AdjustedBundle result{start, {}};
   std::vector<PoseBlock> cameras = pose_blocks(start.cameras);
+  Eigen::Quaterniond q_normal = Eigen::Quaterniond::Identity();
   ceres::HuberLoss huber(options.huber_px);
   ceres::Problem::Options sharing;
   sharing.loss_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
   ceres::Problem problem(sharing);
   auto ordering = std::make_shared<ceres::ParameterBlockOrdering>();
-  add_pose_blocks(cameras, widest_frame(start.cameras), problem, *ordering);
+  const auto scale_frame = on_plane ? std::nullopt : std::optional(widest_frame(start.cameras));
+  add_pose_blocks(cameras, scale_frame, problem, *ordering);
+  if (on_plane) {
+    q_normal = rotation_from_z_axis(start.normal);
+    problem.AddParameterBlock(q_normal.coeffs().data(), 4, new DirectionManifold);
+    ordering->AddElementToGroup(q_normal.coeffs().data(), 2);
+  }
+  const bool held = options.normal == PlaneNormal::held;
+  if (held) problem.SetParameterBlockConstant(q_normal.coeffs().data());
   for (const Observation& observation : observations) {
     double* point = result.bundle.points.col(observation.point).data();
-    problem.AddResidualBlock(new ObservationCost(intrinsics, observation.pixel),
+    std::vector<double*> blocks{cameras[observation.frame].data(), point};
+    if (on_plane) blocks.push_back(q_normal.coeffs().data());
+    problem.AddResidualBlock(new ObservationCost(intrinsics, observation.pixel, on_plane),
                              options.huber_px > 0 ? &huber : nullptr,
-                             cameras[observation.frame].data(),
-                             point);
+                             blocks);
     ordering->AddElementToGroup(point, 0);
   }
-  result.solver = solve_by_schur(problem, std::move(ordering), options.tolerances, watch);
+  const auto normal = [&]() -> Vector3d {
+    return held ? start.normal : direction(q_normal).normalized();
+  };
+  result.solver = solve_by_schur(problem,
+                                 std::move(ordering),
+                                 options.tolerances,
+                                 watch,
+                                 on_plane ? ReadNormal(normal) : nullptr);
   for (std::size_t i = 1; i < cameras.size(); ++i) result.bundle.cameras[i] = pose_of(cameras[i]);
+  if (on_plane)
+    result.bundle =
+        bundle_on_plane(K, result.bundle.cameras, normal(), result.bundle.points.topRows<2>());
   return result;
 }
 
-RobustBundle adjust_bundle_robustly(const Matrix3d& K,
-                                    const Bundle& start,
-                                    std::span<const Observation> observations,
-                                    double error_px,
-                                    const Watch& watch) {
+AdjustedBundle adjust_bundle_robustly(const Matrix3d& K,
+                                      const Bundle& start,
+                                      std::span<const Observation> observations,
+                                      double error_px,
+                                      const Watch& watch) {
   std::vector<Observation> usable;
   const std::vector<double> errors = reprojection_errors_px(K, start, observations);
   for (std::size_t k = 0; k < observations.size(); ++k) {
@@ -216,60 +225,16 @@ RobustBundle adjust_bundle_robustly(const Matrix3d& K,
   }
   const double sigma_px = std::max(kLeastNoisePx * pixel_unit(K), error_px / kMedianOfRayleigh);
   const double huber_px = kHuberAtSigmas * sigma_px;
-  const AdjustedBundle robust =
-      adjust_bundle(K, start, usable, {huber_px, kRobustTolerances}, watch);
-  RobustBundle result{
-      robust.bundle, without_outliers(K, robust.bundle, usable, sigma_px), robust.solver};
-  if (robust.solver.termination == Termination::failure) return result;
-  AdjustedBundle final_round = adjust_bundle(K, robust.bundle, result.kept, {}, watch);
-  result.bundle = std::move(final_round.bundle);
-  result.solver = std::move(final_round.solver);
+  AdjustedBundle robust = adjust_bundle(K, start, usable, {huber_px, kRobustTolerances}, watch);
+  robust.kept = without_outliers(K, robust.bundle, usable, sigma_px);
+  if (robust.solver.termination == Termination::failure) return robust;
+  AdjustedBundle result = adjust_bundle(K, robust.bundle, robust.kept, {}, watch);
+  result.kept = std::move(robust.kept);
   result.solver.iterations += robust.solver.iterations;
   result.solver.milliseconds += robust.solver.milliseconds;
   continue_trace(robust.solver, result.solver);
   result.solver.initial_cost = 0.5 * sum_of_squares(reprojection_errors_px(K, start, usable));
   if (!result.solver.trace.empty()) result.solver.trace[0].cost = result.solver.initial_cost;
-  return result;
-}
-
-Bundle free_bundle(const Matrix3d& K, const PlaneBundle& bundle) {
-  const Eigen::Matrix3Xd rays = K.inverse() * bundle.pixels_1.colwise().homogeneous();
-  Bundle result{bundle.cameras, Eigen::Matrix3Xd(3, rays.cols())};
-  result.points << bundle.pixels_1, -bundle.normal.transpose() * rays;
-  return result;
-}
-
-AdjustedPlaneBundle adjust_plane_bundle(const Matrix3d& K,
-                                        const PlaneBundle& start,
-                                        std::span<const Observation> observations,
-                                        PlaneNormal normal,
-                                        const Watch& watch) {
-  const Intrinsics intrinsics{K, K.inverse()};
-  AdjustedPlaneBundle result{start, {}};
-  std::vector<PoseBlock> cameras = pose_blocks(start.cameras);
-  Eigen::Quaterniond q_normal = rotation_from_z_axis(start.normal);
-  ceres::Problem problem;
-  auto ordering = std::make_shared<ceres::ParameterBlockOrdering>();
-  add_pose_blocks(cameras, std::nullopt, problem, *ordering);
-  problem.AddParameterBlock(q_normal.coeffs().data(), 4, new DirectionManifold);
-  ordering->AddElementToGroup(q_normal.coeffs().data(), 2);
-  if (normal == PlaneNormal::held) problem.SetParameterBlockConstant(q_normal.coeffs().data());
-  for (const Observation& observation : observations) {
-    double* pixel_1 = result.bundle.pixels_1.col(observation.point).data();
-    problem.AddResidualBlock(new PlaneObservationCost(intrinsics, observation.pixel),
-                             nullptr,
-                             cameras[observation.frame].data(),
-                             pixel_1,
-                             q_normal.coeffs().data());
-    ordering->AddElementToGroup(pixel_1, 0);
-  }
-  const auto normal_now = [&]() -> Vector3d {
-    return normal == PlaneNormal::free ? direction(q_normal).normalized() : start.normal;
-  };
-  result.solver =
-      solve_by_schur(problem, std::move(ordering), kAdjustmentTolerances, watch, normal_now);
-  for (std::size_t i = 1; i < cameras.size(); ++i) result.bundle.cameras[i] = pose_of(cameras[i]);
-  if (normal == PlaneNormal::free) result.bundle.normal = normal_now();
   return result;
 }
 

@@ -9,6 +9,7 @@
 #include "engine/window/window.h"
 
 #include <functional>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -31,7 +32,16 @@ std::vector<Observation> track_observations(
 struct Bundle {
   std::vector<Pose> cameras;  ///< one per frame, the first one is the identity
   Eigen::Matrix3Xd points;    ///< 3 x points: reference pixel u v [px], inverse depth rho
+  /// Of the plane n.P + 1 = 0 if all points are on one; zero otherwise.
+  Eigen::Vector3d normal = Eigen::Vector3d::Zero();
 };
+
+/// Returns a bundle with all points on the plane n.P + 1 = 0, rho = -n.x_1. `pixels_1`: 2 x points,
+/// in the reference image [px].
+Bundle bundle_on_plane(const Eigen::Matrix3d& K,
+                       const std::vector<Pose>& cameras,
+                       const Eigen::Vector3d& normal,
+                       const Eigen::Matrix2Xd& pixels_1);
 
 /// Returns the position of a bundle's point, K^-1 (u v 1)^T / rho.
 Eigen::Vector3d position(const Eigen::Matrix3d& K, const Eigen::Vector3d& point);
@@ -49,61 +59,35 @@ inline constexpr SolverTolerances kAdjustmentTolerances{1e-10, 1e-6};
 struct AdjustmentOptions {
   double huber_px = 0;  ///< knee of the Huber loss; 0 for plain least squares [px]
   SolverTolerances tolerances = kAdjustmentTolerances;
+  /// All points stay on one plane, whose distance 1 is the scale; nullopt: the points are free.
+  std::optional<PlaneNormal> normal = {};
 };
 
 struct AdjustedBundle {
   Bundle bundle;
   SolverReport solver;
+  std::vector<Observation> kept = {};  ///< final ones of `adjust_bundle_robustly`
 };
 
-/// Minimizes the reprojection error over all poses and observed points. The first camera is held,
-/// and so is the distance of the farthest camera from it (scale). 6m + 3n - 7 unknowns. Fails if
-/// the start has observations behind a camera.
+/// Minimizes the reprojection error over all poses and observed points. The first camera is held.
+/// Free points: so is the distance of the farthest camera from it (scale), 6m + 3n - 7 unknowns. On
+/// a plane: 6m + 2n - 6 unknowns, two fewer with the normal held. Fails if the start has
+/// observations behind a camera.
 AdjustedBundle adjust_bundle(const Eigen::Matrix3d& K,
                              const Bundle& start,
                              std::span<const Observation> observations,
                              const AdjustmentOptions& options,
                              const Watch& watch);
 
-struct RobustBundle {
-  Bundle bundle;
-  std::vector<Observation> kept;  ///< observations of the final adjustment
-  SolverReport solver;            ///< initial cost: of the start and all its observations
-};
-
-/// Adjusts with a Huber loss, drops outliers (observations beyond three robust standard deviations,
-/// points behind the reference camera or seen fewer than three times, tracks that slipped), and
-/// adjusts the rest to plain least squares. `error_px` is the expected median error of an
-/// observation, a lower limit of the standard deviation: otherwise tracks with a common drift could
-/// outvote the others.
-RobustBundle adjust_bundle_robustly(const Eigen::Matrix3d& K,
-                                    const Bundle& start,
-                                    std::span<const Observation> observations,
-                                    double error_px,
-                                    const Watch& watch);
-
-/// Poses and points of a window, all points on the plane n.P + 1 = 0: two unknowns per point.
-struct PlaneBundle {
-  std::vector<Pose> cameras;  ///< one per frame, the first one is the identity
-  Eigen::Vector3d normal;
-  Eigen::Matrix2Xd pixels_1;  ///< 2 x points, in the reference image [px]
-};
-
-/// Returns the same bundle with explicit inverse depths rho = -n.x_1.
-Bundle free_bundle(const Eigen::Matrix3d& K, const PlaneBundle& bundle);
-
-struct AdjustedPlaneBundle {
-  PlaneBundle bundle;
-  SolverReport solver;
-};
-
-/// Minimizes the reprojection error over all poses, the points on the plane and, if free, its
-/// normal; the plane's distance 1 is the scale. 6m + 2n - 6 unknowns, two fewer with the normal
-/// held. Fails if the start has observations behind a camera.
-AdjustedPlaneBundle adjust_plane_bundle(const Eigen::Matrix3d& K,
-                                        const PlaneBundle& start,
-                                        std::span<const Observation> observations,
-                                        PlaneNormal normal,
-                                        const Watch& watch);
+/// Adjusts free points with a Huber loss, drops outliers (observations beyond three robust standard
+/// deviations, points behind the reference camera or seen fewer than three times, tracks that
+/// slipped), and adjusts the rest to plain least squares. `error_px` is the expected median error
+/// of an observation, a lower limit of the standard deviation: otherwise tracks with a common drift
+/// could outvote the others. The initial cost is that of the start and all its observations.
+AdjustedBundle adjust_bundle_robustly(const Eigen::Matrix3d& K,
+                                      const Bundle& start,
+                                      std::span<const Observation> observations,
+                                      double error_px,
+                                      const Watch& watch);
 
 }  // namespace gpo

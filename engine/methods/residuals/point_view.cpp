@@ -73,16 +73,6 @@ Pose pose_of(const PoseBlock& block) {
   return {q.normalized().toRotationMatrix(), Eigen::Map<const Eigen::Vector3d>(block.data() + 4)};
 }
 
-void write_residual(const PointView& view,
-                    const Eigen::Vector2d& observed,
-                    double* residual,
-                    double* d_pose) {
-  Eigen::Map<Eigen::Vector2d>{residual} = view.pixel - observed;
-  if (d_pose == nullptr) return;
-  Eigen::Map<Eigen::Matrix<double, 2, 7, Eigen::RowMajor>> J(d_pose);
-  J << view.d_rotation, view.d_position;
-}
-
 void add_pose_blocks(std::span<PoseBlock> cameras,
                      std::optional<int> scale_frame,
                      ceres::Problem& problem,

@@ -58,13 +58,6 @@ using PoseBlock = std::array<double, 7>;
 std::vector<PoseBlock> pose_blocks(std::span<const Pose> cameras);
 Pose pose_of(const PoseBlock& block);
 
-/// Writes the residual p - p_observed and, unless `d_pose` is null, its derivative with respect to
-/// the camera's block (2 x 7, row-major).
-void write_residual(const PointView& view,
-                    const Eigen::Vector2d& observed,
-                    double* residual,
-                    double* d_pose);
-
 /// Adds the cameras as unknowns of elimination group 1 and holds the first one. The camera of
 /// `scale_frame` keeps its distance from the origin.
 void add_pose_blocks(std::span<PoseBlock> cameras,

@@ -19,12 +19,10 @@ std::vector<Observation> observations_of(const Simulation& truth, bool on_plane)
                             [&](int, int track) { return truth.on_plane[track] || !on_plane; });
 }
 
-PlaneBundle plane_bundle(const Simulation& truth, const Initialization& start) {
-  return {start.cameras, start.plane.normal, truth.window.points_px[0]};
-}
-
-PlaneBundle perturbed_bundle(const Simulation& truth, std::uint64_t seed = 1) {
-  return plane_bundle(truth, perturbed_truth(truth, {.seed = seed}));
+Bundle perturbed_bundle(const Simulation& truth, std::uint64_t seed = 1) {
+  const Initialization start = perturbed_truth(truth, {.seed = seed});
+  return bundle_on_plane(
+      truth.window.K, start.cameras, start.plane.normal, truth.window.points_px[0]);
 }
 
 /// Half the summed squares of pi(K X_c) - p, without the engine's Jacobians and parameters.
@@ -107,13 +105,18 @@ void expect_no_gain_of_points(const Simulation& truth,
 
 /// Expects no gain along the reference pixels and rotations of the normal.
 void expect_no_gain_on_plane(const Simulation& truth,
-                             const PlaneBundle& bundle,
+                             const Bundle& bundle,
                              Observations observations) {
-  PlaneBundle moving = bundle;
+  Bundle moving = bundle;
+  const auto moved_cost = [&](Observations of) {
+    const Bundle on_plane =
+        bundle_on_plane(truth.window.K, moving.cameras, moving.normal, moving.points.topRows<2>());
+    return squared_cost(truth, on_plane, of);
+  };
   for (int k = 0; k < 2; ++k) {
     expect_no_gain([&](double h) {
       moving.normal = so3_exp(h * Vector3d::Unit(k)) * bundle.normal;
-      return squared_cost(truth, free_bundle(truth.window.K, moving), observations);
+      return moved_cost(observations);
     });
     moving.normal = bundle.normal;
     for (int j = 0; j < truth.window.track_count(); ++j) {
@@ -121,10 +124,10 @@ void expect_no_gain_on_plane(const Simulation& truth,
       if (of_point.empty()) continue;
       expect_no_gain([&](double h) {
         // A step of a radian or a plane distance corresponds to some hundred pixels.
-        moving.pixels_1.col(j) = bundle.pixels_1.col(j) + 100 * h * Eigen::Vector2d::Unit(k);
-        return squared_cost(truth, free_bundle(truth.window.K, moving), of_point);
+        moving.points.col(j) = bundle.points.col(j) + 100 * h * Vector3d::Unit(k);
+        return moved_cost(of_point);
       });
-      moving.pixels_1.col(j) = bundle.pixels_1.col(j);
+      moving.points.col(j) = bundle.points.col(j);
     }
   }
 }
@@ -134,7 +137,7 @@ Bundle true_bundle(const Simulation& truth, SimulationOptions options) {
   options.noise_px = 0;
   const Simulation exact = simulate(options);
   const Eigen::Matrix3d K_inverse = exact.window.K.inverse();
-  Bundle bundle = free_bundle(exact.window.K, perturbed_bundle(exact));
+  Bundle bundle = perturbed_bundle(exact);
   bundle.cameras = truth.cameras;
   for (int j = 0; j < exact.window.track_count(); ++j) {
     Eigen::Vector2d sums = Eigen::Vector2d::Zero();
@@ -162,7 +165,7 @@ TEST_P(BundleOnMotion, FindsSameMinimumFromAllStarts) {
     const Simulation truth = simulate(options(seed));
     const Eigen::Matrix3d& K = truth.window.K;
     const auto observations = observations_of(truth, false);
-    const Bundle start = free_bundle(K, perturbed_bundle(truth, seed));
+    const Bundle start = perturbed_bundle(truth, seed);
     const Bundle exact = true_bundle(truth, options(seed));
     const AdjustedBundle result = adjust_bundle(K, start, observations, {}, {});
     ASSERT_EQ(result.solver.termination, Termination::convergence);
@@ -185,15 +188,18 @@ TEST_P(BundleOnMotion, PlaneAdjustmentFindsMinimumNoWorseThanTruth) {
   for (std::uint64_t seed = 1; seed <= 5; ++seed) {
     const Simulation truth = simulate(options(seed));
     const auto observations = observations_of(truth, true);
-    const AdjustedPlaneBundle result = adjust_plane_bundle(
-        truth.window.K, perturbed_bundle(truth, seed), observations, PlaneNormal::free, {});
+    const AdjustedBundle result = adjust_bundle(truth.window.K,
+                                                perturbed_bundle(truth, seed),
+                                                observations,
+                                                {.normal = PlaneNormal::free},
+                                                {});
     ASSERT_EQ(result.solver.termination, Termination::convergence);
     const Bundle exact = true_bundle(truth, options(seed));
-    const Bundle adjusted = free_bundle(truth.window.K, result.bundle);
+    const Bundle& adjusted = result.bundle;
     EXPECT_LE(result.solver.final_cost, squared_cost(truth, exact, observations));
     EXPECT_NEAR(result.solver.final_cost, squared_cost(truth, adjusted, observations), 1e-6);
     expect_no_gain_of_cameras(truth, adjusted, observations);
-    expect_no_gain_on_plane(truth, result.bundle, observations);
+    expect_no_gain_on_plane(truth, adjusted, observations);
   }
 }
 
@@ -202,11 +208,12 @@ INSTANTIATE_TEST_SUITE_P(All, BundleOnMotion, testing::ValuesIn(kUsualMotions));
 TEST(RobustBundle, DropsFewInliersAndNoneWithinExpectedError) {
   const Simulation truth = simulate({.motion = Motion::orbit, .frames = 12});
   const auto observations = observations_of(truth, true);
-  const Bundle start = free_bundle(truth.window.K, perturbed_bundle(truth));
-  const RobustBundle strict = adjust_bundle_robustly(truth.window.K, start, observations, 0.3, {});
+  const Bundle start = perturbed_bundle(truth);
+  const AdjustedBundle strict =
+      adjust_bundle_robustly(truth.window.K, start, observations, 0.3, {});
   EXPECT_GT(strict.kept.size(), 0.95 * observations.size());
   EXPECT_LT(strict.kept.size(), observations.size());
-  const RobustBundle lenient = adjust_bundle_robustly(truth.window.K, start, observations, 2, {});
+  const AdjustedBundle lenient = adjust_bundle_robustly(truth.window.K, start, observations, 2, {});
   EXPECT_EQ(lenient.kept.size(), observations.size());
 }
 
