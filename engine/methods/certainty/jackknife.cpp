@@ -2,19 +2,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/methods/certainty/jackknife.h"
 
-#include "engine/geometry/decompositions.h"
+#include "engine/methods/certainty/sandwich.h"
 
 #include <algorithm>
 #include <cmath>
 #include <utility>
-
-#include <Eigen/Eigenvalues>
 
 namespace gpo {
 namespace {
 
 using Eigen::Matrix2d;
 using Eigen::Matrix3d;
+using Eigen::MatrixXd;
 
 constexpr int kColumns = 5;  // regions have two rows
 constexpr int kLeastInGroup = 2;
@@ -60,67 +59,29 @@ Eigen::Matrix<double, size, size> spread_of_columns(const Eigen::Matrix<double, 
   return (kJackknifeGroups - 1.0) / static_cast<double>(x.cols()) * off * off.transpose();
 }
 
-template <class Matrix>
-struct Eigenpairs {
-  Eigen::Vector<double, Matrix::RowsAtCompileTime> values;
-  Matrix vectors;
-};
-
-// Eigen's solver for 2 x 2 would take five seconds to compile, that for 3 x 3 half a second.
-Eigenpairs<Matrix2d> eigenpairs(const Matrix2d& A) {
-  const SymmetricEigen eigen = symmetric_eigen(A);
-  return {eigen.values, eigen.vectors};
-}
-
-Eigenpairs<Matrix3d> eigenpairs(const Matrix3d& A) {
-  const Eigen::SelfAdjointEigenSolver<Matrix3d> eigen(A);
-  return {eigen.eigenvalues(), eigen.eigenvectors()};
-}
-
-/// Returns the positive semidefinite part of a symmetric matrix.
-template <class Matrix>
-Matrix positive_part(const Matrix& A) {
-  const auto [values, vectors] = eigenpairs(A);
-  return vectors * values.cwiseMax(0).asDiagonal() * vectors.transpose();
-}
-
-template <class Matrix>
-Matrix square_root(const Eigenpairs<Matrix>& eigen) {
-  return eigen.vectors * eigen.values.cwiseSqrt().asDiagonal() * eigen.vectors.transpose();
-}
-
 /// Returns a covariance of the method's own size and mostly its shape, nowhere below that of the
 /// window's noise, because runs do not differ by errors that all regions share. Ten runs determine
 /// the shape too badly: squared errors of centers in an ellipsoid of three dimensions would be 5
 /// to 8.
-template <class Matrix>
-Matrix shrunk(const Matrix& own, const Matrix& noise) {
+MatrixXd shrunk(const MatrixXd& own, const MatrixXd& noise) {
   constexpr double kWindow = 0.25;
   if (!(noise.trace() > 0)) return own;
-  const Matrix mixed = (1 - kWindow) * own + kWindow * own.trace() / noise.trace() * noise;
-  return mixed + positive_part<Matrix>(noise - mixed);
+  const MatrixXd mixed = (1 - kWindow) * own + kWindow * own.trace() / noise.trace() * noise;
+  return mixed + power_of_positive(noise - mixed, 1);
 }
 
-/// Returns the symmetric T with T A T = B.
-template <class Matrix>
-Matrix transport(const Matrix& A, const Matrix& B) {
-  const Matrix invertible = A + 1e-12 * A.trace() * Matrix::Identity();
-  const Eigenpairs<Matrix> eigen = eigenpairs(invertible);
-  const Matrix root = square_root(eigen);
-  const Matrix inverse = square_root<Matrix>({eigen.values.cwiseInverse(), eigen.vectors});
-  const Matrix middle = positive_part<Matrix>(root * B * root);
-  return inverse * square_root(eigenpairs(middle)) * inverse;
-}
-
-/// Gives a diagonal block of the joint covariance another covariance, with the same correlations.
-template <class Matrix>
-void reshape(Eigen::MatrixXd& joint, Eigen::Index at, const Matrix& to) {
-  constexpr int size = Matrix::RowsAtCompileTime;
-  const Matrix from = joint.block<size, size>(at, at);
+/// Gives a diagonal block of the joint covariance another covariance, with the same correlations:
+/// by the symmetric T with T from T = to.
+void reshape(MatrixXd& joint, Eigen::Index at, const MatrixXd& to) {
+  const auto rows = Eigen::seqN(at, to.rows());
+  MatrixXd from = joint(rows, rows);
   if (!(from.trace() > 0)) return;
-  const Matrix T = transport(from, to);
-  joint.middleRows<size>(at) = (T * joint.middleRows<size>(at)).eval();
-  joint.middleCols<size>(at) = (joint.middleCols<size>(at) * T).eval();
+  from.diagonal().array() += 1e-11 * from.trace();  // invertible
+  const MatrixXd root = power_of_positive(from, 0.5);
+  const MatrixXd inverse = power_of_positive(from, -0.5);
+  const MatrixXd T = inverse * power_of_positive(root * to * root, 0.5) * inverse;
+  joint(rows, Eigen::all) = (T * joint(rows, Eigen::all)).eval();
+  joint(Eigen::all, rows) = (joint(Eigen::all, rows) * T).eval();
 }
 
 }  // namespace
@@ -193,13 +154,13 @@ std::optional<NoiseSpread> jackknife(
 Uncertainty with_own_noise(Uncertainty u, const Plane& plane, const NoiseSpread& own) {
   const auto N = normal_tangents(plane.normal);
   const Matrix2d others = N.transpose() * u.normal_covariance * N - u.noise.normal;
-  const Matrix2d normal = shrunk(own.normal, u.noise.normal) + positive_part(others);
+  const Matrix2d normal = shrunk(own.normal, u.noise.normal) + power_of_positive(others, 1);
   const Eigen::Index rows = u.joint_covariance.rows();
   const Eigen::Index frames = std::ssize(u.center_covariances);
   for (Eigen::Index i = 1; i < frames; ++i) {
     Matrix3d& center = u.center_covariances[i];
     center = shrunk(own.centers[i], u.noise.centers[i]) +
-             positive_part<Matrix3d>(center - u.noise.centers[i]);
+             power_of_positive(center - u.noise.centers[i], 1);
     if (rows > 0) reshape(u.joint_covariance, 3 * (i - 1), center);
     double& sigma = u.distance_ratio_sigmas[i];
     const double more = std::max(0.0, sigma * sigma - u.noise.distance_ratios[i]);
