@@ -131,16 +131,10 @@ std::optional<FreeMotion> free_motion(const SolvedPlanes& solved) {
   const auto inverse = inverse_information(free.bread.information);
   if (!inverse) return std::nullopt;
   free.inverse = *inverse;
-  free.shared_gradient = Eigen::VectorXd::Zero(free.bread.layout.size());
+  free.shared_gradient = reduced_gradient(linearized, free.bread);
   free.own_gradients.assign(frames, OwnVector::Zero(6));
-  for (int i = 1; i < frames; ++i) {
-    for (int k = 0; k < planes; ++k) {
-      const auto& g = linearized.planes[k][i].Jtr;
-      free.shared_gradient(free.bread.places(k)) += free.bread.columns[k][i].transpose() * g;
-      free.own_gradients[i] += g.tail<6>();
-    }
-    free.shared_gradient -= free.bread.frames[i].gain.transpose() * free.own_gradients[i];
-  }
+  for (const auto& plane : linearized.planes)
+    for (int i = 1; i < frames; ++i) free.own_gradients[i] += plane[i].Jtr.tail<6>();
   return free;
 }
 

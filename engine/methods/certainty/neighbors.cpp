@@ -86,24 +86,6 @@ void add(const Linearization& one, double sign, Linearization& to) {
   }
 }
 
-/// Returns the step of the shared unknowns for the gradient of `part`; `bread` may be that of other
-/// observations.
-Eigen::VectorXd step_of(const Linearization& part,
-                        const Bread& bread,
-                        const SharedMatrix& inverse) {
-  Eigen::VectorXd reduced = Eigen::VectorXd::Zero(bread.layout.size());
-  for (std::size_t i = 1; i < bread.frames.size(); ++i) {
-    Eigen::Matrix<double, 8, 1> both = Eigen::Matrix<double, 8, 1>::Zero();
-    for (std::size_t k = 0; k < part.planes.size(); ++k) {
-      const auto& g = part.planes[k][i].Jtr;
-      reduced(bread.places(static_cast<int>(k))) += bread.columns[k][i].transpose() * g;
-      both += g;
-    }
-    reduced -= bread.frames[i].gain.transpose() * both.tail(bread.frames[i].inverse.rows());
-  }
-  return -(inverse * reduced);
-}
-
 /// Returns true if the step of the normal is negligible. Away from the minimum, e.g. with a wrong
 /// gyroscope bias held, every block has a step.
 bool is_solution(const Linearization& whole,
@@ -111,7 +93,7 @@ bool is_solution(const Linearization& whole,
                  const Bread& bread,
                  const SharedMatrix& inverse,
                  const SharedMatrix& noise) {
-  Eigen::VectorXd step = step_of(whole, bread, inverse);
+  Eigen::VectorXd step = -(inverse * reduced_gradient(whole, bread));
   for (std::size_t i = 1; i < bread.noise_weights.size(); ++i) {  // step by the noise prior
     const Eigen::Vector3d g = bread.noise_weights[i] * motion.gyro_noise_rad[i];
     const Eigen::VectorXd pull = bread.frames[i].gain.topRows<3>().transpose() * g;
@@ -153,7 +135,7 @@ std::optional<Moved> leave_out(const Jackknife& jackknife, const SharedMatrix& o
     const auto inverse = inverse_information(bread.information);
     if (!inverse) return std::nullopt;
     // The sum over all blocks has no step: the step of the others is minus that of the block.
-    const Eigen::VectorXd x = -step_of(out, bread, *inverse);
+    const Eigen::VectorXd x = *inverse * reduced_gradient(out, bread);
     moved.spread += scale * x * x.transpose();
     moved.expected += scale * sigma2 * (*inverse - of_all);
   }

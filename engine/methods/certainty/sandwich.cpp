@@ -10,7 +10,6 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
-#include <utility>
 
 #include <Eigen/Cholesky>
 #include <Eigen/Geometry>
@@ -209,8 +208,7 @@ void eliminate(const Linearization& linearized, Bread& bread) {
   }
 }
 
-Eigen::VectorXd newton_step(const Sandwich& sandwich, const Linearization& linearized) {
-  const Bread& bread = sandwich.bread;
+Eigen::VectorXd reduced_gradient(const Linearization& linearized, const Bread& bread) {
   Eigen::VectorXd reduced = Eigen::VectorXd::Zero(bread.layout.size());
   for (int i = 1; i < std::ssize(bread.frames); ++i) {
     const auto& gain = bread.frames[i].gain;
@@ -220,7 +218,7 @@ Eigen::VectorXd newton_step(const Sandwich& sandwich, const Linearization& linea
       reduced -= gain.transpose() * g.tail(gain.rows());
     }
   }
-  return -(sandwich.inverse * reduced);
+  return reduced;
 }
 
 void Spread::add(const SolutionMove& move) {
@@ -322,29 +320,6 @@ Spread spread_by_observation(const Influences& all, double degrees_of_freedom) {
     spread.own.emplace_back(degrees_of_freedom * e * e.transpose());
   }
   return spread;
-}
-
-std::vector<SolutionMove> moves_by_track(const Sandwich& sandwich,
-                                         const Influences& all,
-                                         double degrees_of_freedom) {
-  std::vector<int> place(sandwich.solved.window.track_count(), -1);
-  int tracks = 0;
-  for (const int track : all.track)
-    if (place[track] < 0) place[track] = tracks++;
-  const OwnVector none = OwnVector::Zero(all.own.rows());
-  const std::size_t frames = sandwich.solved.frame_count();
-  std::vector<SolutionMove> moves(tracks,
-                                  {Eigen::VectorXd::Zero(all.shared.rows()), {frames, none}});
-  const double weight =
-      std::sqrt(degrees_of_freedom * tracks / std::max(1.0, static_cast<double>(tracks) - 1));
-  for (std::size_t i = 1; i < frames; ++i) {
-    for (Index o = all.first[i]; o < all.first[i + 1]; ++o) {
-      SolutionMove& move = moves[place[all.track[o]]];
-      move.shared += weight * all.shared.col(o);
-      move.own[i] += weight * all.own.col(o);
-    }
-  }
-  return moves;
 }
 
 }  // namespace gpo

@@ -77,8 +77,9 @@ struct SolutionMove {
   std::vector<OwnVector> own;  ///< one per frame
 };
 
-/// Returns the Gauss-Newton step of the shared unknowns from the solution, without the priors.
-Eigen::VectorXd newton_step(const Sandwich& sandwich, const Linearization& linearized);
+/// Returns the gradient over the shared unknowns with the frames' own ones eliminated, without the
+/// priors. `bread` may be that of other observations.
+Eigen::VectorXd reduced_gradient(const Linearization& linearized, const Bread& bread);
 
 /// Displacements of the solution by all observations, one per column, frame by frame.
 struct Influences {
@@ -123,11 +124,5 @@ Spread spread_of(const Sandwich& sandwich, const Influences& all, double degrees
 
 /// Returns the spread with single observations as clusters: that of independent errors.
 Spread spread_by_observation(const Influences& all, double degrees_of_freedom);
-
-/// Returns the displacement by each observed track, weighted so that the sums of squares are those
-/// of `spread_of`.
-std::vector<SolutionMove> moves_by_track(const Sandwich& sandwich,
-                                         const Influences& all,
-                                         double degrees_of_freedom);
 
 }  // namespace gpo

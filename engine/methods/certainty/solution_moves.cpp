@@ -77,6 +77,31 @@ ResultMoves moves_of_results(const PlaneMotion& motion,
   return all;
 }
 
+/// Returns the displacements by each observed track, weighted so that the sums of squares are those
+/// of `spread_of`.
+ResultMoves moves_by_track(const Sandwich& sandwich,
+                           const Eigen::MatrixXd& M,
+                           const Influences& all,
+                           double degrees_of_freedom) {
+  std::vector<int> place(sandwich.solved.window.track_count(), -1);
+  int tracks = 0;
+  for (const int track : all.track)
+    if (place[track] < 0) place[track] = tracks++;
+  const double weight = std::sqrt(degrees_of_freedom * tracks / std::max(1.0, tracks - 1.0));
+  ResultMoves moves{Eigen::MatrixXd::Zero(M.rows(), tracks),
+                    Eigen::MatrixXd::Zero(M.cols(), tracks)};
+  for (Eigen::Index i = 1; i < sandwich.solved.frame_count(); ++i) {
+    for (Eigen::Index o = all.first[i]; o < all.first[i + 1]; ++o) {
+      const int track = place[all.track[o]];
+      moves.shared.col(track) += weight * all.shared.col(o);
+      moves.results.col(track).segment<3>(3 * (i - 1)) -=
+          weight * (sandwich.solved.motion.R_wc[i] * all.own.col(o).tail<3>());
+    }
+  }
+  moves.results += M * moves.shared;
+  return moves;
+}
+
 Eigen::MatrixXd spread_of_results(const PlaneMotion& motion,
                                   const Eigen::MatrixXd& M,
                                   const Spread& spread) {
@@ -225,8 +250,7 @@ Eigen::MatrixXd joint_covariance(const Sandwich& sandwich,
   std::vector<SolutionMove> moves = moves_by_gyro_noise(sandwich);
   moves.insert(moves.end(), of_image.begin(), of_image.end());
   const auto [of_others, others] = moves_of_results(motion, M, moves);
-  const auto [of_tracks, tracks] =
-      moves_of_results(motion, M, moves_by_track(sandwich, influences, degrees_of_freedom));
+  const auto [of_tracks, tracks] = moves_by_track(sandwich, M, influences, degrees_of_freedom);
   const Spread observations = spread_by_observation(influences, degrees_of_freedom);
   std::vector<int> blocks(bread.frames.size() - 1, 3);
   if (bread.layout.gyro > 0) blocks.push_back(3);

@@ -105,7 +105,7 @@ HeldGyro held_gyro(const SolvedPlanes& solved,
   const SharedMatrix covariance =
       spread_of(sandwich, influences_of(sandwich), degrees_of_freedom).shared +
       prior_share(sandwich, linearized.sigma_px);
-  const Eigen::VectorXd step = newton_step(sandwich, linearized).tail(size);
+  const Eigen::VectorXd step = -(*inverse * reduced_gradient(linearized, bread)).tail(size);
   const Eigen::MatrixXd moment = covariance.bottomRightCorner(size, size) + step * step.transpose();
   constexpr double kLeast = 0.038, kMost = 3.78;  // 1 and 99 % of chi-square of 3, by 3
   const double ratio = (stated.inverse() * moment.topLeftCorner<3, 3>()).trace() / 3;
