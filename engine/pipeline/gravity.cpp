@@ -1,5 +1,6 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
+#include "engine/methods/certainty/uncertainty.h"
 #include "engine/methods/plane/plane_motion.h"
 #include "engine/methods/plane/plane_result.h"
 #include "engine/methods/plane/rolling_shutter.h"
@@ -53,41 +54,17 @@ Matrix3d lowered(const Matrix3d& covariance, const Vector3d& normal, const Matri
   return covariance - tangents * less.topLeftCorner<2, 2>() * tangents.transpose();
 }
 
-void lower_planes(const JointRows& rows, const MatrixXd& less, Initialization& result) {
+void lower_covariances(const JointRows& rows, const MatrixXd& less, Initialization& result) {
   Uncertainty& u = *result.uncertainty;
   const Index leading = rows.of_plane(0);
   set_normal_covariance(
       lowered(u.normal_covariance, result.plane.normal, less.block<2, 2>(leading, leading)), u);
   for (std::size_t k = 0; k < u.others.size(); ++k) {
     const Index at = rows.of_plane(static_cast<int>(k) + 1);
-    PlaneUncertainty& other = u.others[k];
-    other.normal_covariance = lowered(
-        other.normal_covariance, result.planes[k + 1].plane.normal, less.block<2, 2>(at, at));
-    const double variance = std::pow(other.log_distance_sigma, 2) - less(at + 2, at + 2);
-    other.log_distance_sigma = std::sqrt(std::max(0.0, variance));
+    Matrix3d& covariance = u.others[k].normal_covariance;
+    covariance = lowered(covariance, result.planes[k + 1].plane.normal, less.block<2, 2>(at, at));
   }
-}
-
-void lower_motion(const JointRows& rows, const MatrixXd& less, Initialization& result) {
-  Uncertainty& u = *result.uncertainty;
-  const auto tangents = normal_tangents(result.plane.normal);
-  const Index leading = rows.of_plane(0);
-  for (Index i = 1; i < rows.frames; ++i) {
-    const Index at = JointRows::of_center(i);
-    u.center_covariances[i] -= less.block<3, 3>(at, at);
-    const Vector3d by_center = result.plane.normal;
-    const Eigen::Vector2d by_normal = tangents.transpose() * result.cameras[i].p_wc;
-    const double ratio = by_center.dot(less.block<3, 3>(at, at) * by_center) +
-                         2 * by_center.dot(less.block<3, 2>(at, leading) * by_normal) +
-                         by_normal.dot(less.block<2, 2>(leading, leading) * by_normal);
-    const double variance = std::pow(u.distance_ratio_sigmas[i], 2) - ratio;
-    u.distance_ratio_sigmas[i] = std::sqrt(std::max(0.0, variance));
-  }
-  const Index gyro = rows.of_gyro();
-  if (u.bias_covariance && rows.gyro > 0) *u.bias_covariance -= less.block<3, 3>(gyro, gyro);
-  if (u.time_offset_sigma_s && rows.gyro > 3)
-    *u.time_offset_sigma_s =
-        std::sqrt(std::max(0.0, std::pow(*u.time_offset_sigma_s, 2) - less(gyro + 3, gyro + 3)));
+  add_to_marginals(motion_of(result.plane, result.cameras), -less, u);
   u.joint_covariance -= less;
   u.pose_covariance.resize(0, 0);  // no longer valid: the rotations move
 }
@@ -122,8 +99,7 @@ std::optional<Initialization> pulled(const Window& window,
   const JointRows rows{std::ssize(result.cameras), result.uncertainty->joint_bias_rows};
   const Pulled all = pulled_rows(*result.uncertainty, poses, pull);
   Initialization moved = result;
-  lower_planes(rows, all.less, moved);
-  lower_motion(rows, all.less, moved);
+  lower_covariances(rows, all.less, moved);
   move(window, rows, all.step, moved);
   set_plane_uncertainties(moved);
   const Window seen = moved.row_delay_s

@@ -5,6 +5,7 @@
 #include "engine/geometry/decompositions.h"
 #include "engine/methods/certainty/sandwich.h"
 #include "engine/methods/certainty/shared_information.h"
+#include "engine/methods/certainty/uncertainty.h"
 #include "engine/methods/plane/plane_weights.h"
 #include "engine/methods/plane/rolling_shutter.h"
 
@@ -256,31 +257,15 @@ void widen_by_systematic_errors(const SolvedPlanes& solved,
   const auto widened = inverse_information(wide);
   if (!widened) return;
   const SharedMatrix by_shared = *widened - Y;
-  const Eigen::MatrixXd more = K * by_shared * K.transpose();
-  const Eigen::Index at = more.rows() - Y.rows();
-  Eigen::MatrixXd of_poses = Eigen::MatrixXd::Zero(2 * at, Y.cols());
+  Eigen::MatrixXd of_poses = Eigen::MatrixXd::Zero(2 * (K.rows() - Y.rows()), Y.cols());
   for (int i = 1; i < solved.frame_count(); ++i) {
     const Eigen::Index center = 3 * (Eigen::Index{i} - 1);
-    u.center_covariances[i] += more.block<3, 3>(center, center);
-    Eigen::VectorXd by = Eigen::VectorXd::Zero(more.rows());
-    by.segment<3>(center) = solved.motion.normal;
-    by.segment<2>(at + gyro) =
-        -(normal_tangents(solved.motion.normal).transpose() * solved.motion.tau[i]);
-    double& sigma = u.distance_ratio_sigmas[i];
-    sigma = std::sqrt(sigma * sigma + std::max(0.0, by.dot(more * by)));
     of_poses.block(2 * center, 0, 3, gyro) = gyro_columns(solved.window, solved.motion, i, gyro);
     of_poses.middleRows<3>(2 * center + 3) = K.middleRows<3>(center);
   }
   if (u.pose_covariance.size() > 0)
     u.pose_covariance += of_poses * by_shared * of_poses.transpose();
-  if (gyro > 0) *u.bias_covariance += by_shared.topLeftCorner<3, 3>();
-  if (gyro > 3)
-    u.time_offset_sigma_s = std::sqrt(std::pow(*u.time_offset_sigma_s, 2) + by_shared(3, 3));
-  for (std::size_t k = 0; k < u.others.size(); ++k) {
-    const int distance = gyro + UnknownsLayout::of_plane(static_cast<int>(k) + 1) + 2;
-    double& sigma = u.others[k].log_distance_sigma;
-    sigma = std::sqrt(sigma * sigma + by_shared(distance, distance));
-  }
+  add_to_marginals(solved.motion, K * by_shared * K.transpose(), u);
 }
 
 void add_bends(const SolvedPlanes& solved, Uncertainty& u) {

@@ -3,6 +3,7 @@
 #include "engine/methods/joint/joint_uncertainty.h"
 
 #include "engine/methods/certainty/sandwich.h"
+#include "engine/methods/certainty/uncertainty.h"
 
 #include <algorithm>
 #include <cmath>
@@ -19,7 +20,6 @@ using Eigen::Matrix3d;
 using Eigen::MatrixXd;
 using Eigen::Vector2d;
 using Eigen::Vector3d;
-using Eigen::VectorXd;
 
 double normal_variance(const MatrixXd& covariance) {
   return covariance.topLeftCorner<2, 2>().trace();
@@ -163,21 +163,6 @@ std::optional<double> bound_deg(const JointLayout& layout,
   return degrees(sigma_px * std::sqrt(columns.topRows<2>().trace()));
 }
 
-void add_centers(const JointLayout& layout, const PlaneMotion& motion, Uncertainty& result) {
-  const MatrixXd& joint = result.joint_covariance;
-  const Index planes_at = joint.rows() - layout.shared.of_gyro();
-  result.center_covariances.emplace_back(Matrix3d::Zero());
-  result.distance_ratio_sigmas.push_back(0);
-  for (int i = 1; i < layout.frames; ++i) {
-    const Index at = 3 * (i - 1);
-    result.center_covariances.emplace_back(joint.block<3, 3>(at, at));
-    VectorXd ratio = VectorXd::Zero(joint.rows());
-    ratio.segment<3>(at) = motion.normal;
-    ratio.segment<2>(planes_at) = -(normal_tangents(motion.normal).transpose() * motion.tau[i]);
-    result.distance_ratio_sigmas.push_back(std::sqrt(std::max(0.0, ratio.dot(joint * ratio))));
-  }
-}
-
 void add_planes(const JointLayout& layout,
                 const PlaneMotion& motion,
                 const MatrixXd& covariance,
@@ -189,11 +174,8 @@ void add_planes(const JointLayout& layout,
   };
   result.normal_covariance = of_normal(motion.normal, 0);
   result.normal_sigma_deg = degrees(std::sqrt(result.normal_covariance.trace()));
-  for (int k = 1; k < layout.planes; ++k) {
-    const Index at = UnknownsLayout::of_plane(k) + 2;
-    result.others.push_back({of_normal(motion.others[k - 1].m.normalized(), k),
-                             std::sqrt(std::max(0.0, covariance(at, at)))});
-  }
+  for (int k = 1; k < layout.planes; ++k)
+    result.others.push_back({of_normal(motion.others[k - 1].m.normalized(), k)});
 }
 
 /// Returns the part of the normal's standard deviation that the lens residual contributes [deg].
@@ -264,15 +246,14 @@ Uncertainty uncertainty_of(const Model& model,
   result.joint_covariance = covariance_of_results(layout, state.motion, covariance);
   result.pose_covariance = moves_of_poses(
       model, state.motion, moves_of_poses(model, state.motion, covariance).transpose());
-  add_centers(layout, state.motion, result);
-  const Index gyro = layout.shared.of_gyro();
-  if (layout.shared.gyro > 0) {
-    result.joint_bias_rows = layout.shared.gyro;
-    result.bias_covariance = covariance.block<3, 3>(gyro, gyro);
-    if (layout.shared.gyro > 3)
-      result.time_offset_sigma_s = std::sqrt(covariance(gyro + 3, gyro + 3));
+  result.center_covariances.assign(layout.frames, Matrix3d::Zero());
+  result.distance_ratio_sigmas.assign(layout.frames, 0);
+  result.joint_bias_rows = layout.shared.gyro;
+  if (layout.shared.gyro > 0) result.bias_covariance = Matrix3d::Zero();
+  if (layout.shared.gyro > 3) result.time_offset_sigma_s = 0;
+  add_to_marginals(state.motion, result.joint_covariance, result);
+  if (layout.shared.gyro > 0)
     result.bound_unknown_bias_deg = bound_deg(layout, at, &prior, scales.sigma_px);
-  }
   result.bound_known_rotations_deg = bound_deg(layout, at, nullptr, scales.sigma_px);
   if (layout.row_delay > 0)
     result.row_delay_sigma_s = std::sqrt(covariance(layout.at_row_delay(), layout.at_row_delay()));
