@@ -9,6 +9,7 @@
 #include <cstddef>
 
 #include <Eigen/LU>
+#include <ceres/normal_prior.h>
 
 namespace gpo {
 namespace {
@@ -137,32 +138,13 @@ class FrameCost : public ceres::CostFunction {
   int plane_;
 };
 
-/// Gaussian prior on bias and time offset, or on a frame's own rotation [px].
-class PriorCost : public ceres::CostFunction {
- public:
-  PriorCost(const Vector3d& bias_rad_s, const Eigen::Vector4d& weights, int size)
-      : weights_(weights), size_(size) {
-    prior_ << bias_rad_s, 0;
-    *mutable_parameter_block_sizes() = {size};
-    set_num_residuals(size);
-  }
-
-  bool Evaluate(const double* const* parameters,
-                double* residuals,
-                double** jacobians) const override {
-    for (int k = 0; k < size_; ++k) {
-      residuals[k] = weights_[k] * (parameters[0][k] - prior_[k]);
-      for (int l = 0; jacobians != nullptr && jacobians[0] != nullptr && l < size_; ++l)
-        jacobians[0][size_ * k + l] = k == l ? weights_[k] : 0;
-    }
-    return true;
-  }
-
- private:
-  Eigen::Vector4d prior_;
-  Eigen::Vector4d weights_;
-  int size_;
-};
+/// Gaussian prior of a parameter block [px].
+void add_prior(const Eigen::VectorXd& mean,
+               const Eigen::VectorXd& weights,
+               double* block,
+               ceres::Problem& problem) {
+  problem.AddResidualBlock(new ceres::NormalPrior(weights.asDiagonal(), mean), nullptr, block);
+}
 
 Blocks parameter_blocks(const PlaneMotion& motion) {
   Blocks blocks;
@@ -206,11 +188,10 @@ PlaneSolution solve_plane_with_ceres(const PlaneTask& task,
   ordering->AddElementToGroup(normal, 3);
   if (is_shared(unknowns)) {
     const int size = gyro_unknowns(window, unknowns.rotations);
-    Eigen::Vector4d weights = Eigen::Vector4d::Constant(unknowns.sigma_px);
-    weights.head<3>() /= window.gyro->prior_sigma_rad_s;
-    if (size == 4) weights(3) /= window.gyro->time_offset_sigma_s;
-    problem.AddResidualBlock(
-        new PriorCost(window.gyro->prior_rad_s, weights, size), nullptr, blocks.bias_offset.data());
+    Eigen::Vector4d mean;
+    mean << window.gyro->prior_rad_s, 0;
+    const GyroVector weights = unknowns.sigma_px / gyro_prior_sigmas(window, size).array();
+    add_prior(mean.head(size), weights, blocks.bias_offset.data(), problem);
     ordering->AddElementToGroup(blocks.bias_offset.data(), 4);
   }
   for (Vector3d& m : blocks.others) {
@@ -230,9 +211,7 @@ PlaneSolution solve_plane_with_ceres(const PlaneTask& task,
     if (is_own(unknowns)) ordering->AddElementToGroup(blocks.phi[i].data(), 2);
     if (unknowns.gyro_noise) {
       const double weight = unknowns.sigma_px / gyro_noise_sigma_rad(window, i);
-      const Eigen::Vector4d weights = Eigen::Vector4d::Constant(weight);
-      problem.AddResidualBlock(
-          new PriorCost(Vector3d::Zero(), weights, 3), nullptr, blocks.phi[i].data());
+      add_prior(Vector3d::Zero(), Vector3d::Constant(weight), blocks.phi[i].data(), problem);
     }
   }
   const SolverReport solver = solve_by_schur(
