@@ -22,6 +22,19 @@ Eigen::Quaterniond exponential(const Eigen::Vector3d& rotation_rad) {
   return q;
 }
 
+/// Returns d(q [+] u)/du at u = 0.
+Eigen::Matrix<double, 4, 2> plus_jacobian(const Eigen::Quaterniond& q) {
+  const Eigen::Matrix<double, 3, 2> N = tangents(q);
+  Eigen::Matrix<double, 4, 2> J;
+  for (int k = 0; k < 2; ++k) {
+    Eigen::Quaterniond imaginary;
+    imaginary.w() = 0;
+    imaginary.vec() = N.col(k);
+    J.col(k) = 0.5 * (imaginary * q).coeffs();
+  }
+  return J;
+}
+
 /// Returns the current values of all free parameters, block by block.
 Eigen::VectorXd unknowns_of(const ceres::Problem& problem) {
   std::vector<double*> blocks;
@@ -98,56 +111,34 @@ Eigen::Matrix<double, 3, 4> direction_jacobian(const Eigen::Quaterniond& q) {
   return 2 * J;
 }
 
-Eigen::Quaterniond direction_plus(const Eigen::Quaterniond& q, const Eigen::Vector2d& u) {
-  return (exponential(tangents(q) * u) * q).normalized();
-}
-
-Eigen::Matrix<double, 4, 2> direction_plus_jacobian(const Eigen::Quaterniond& q) {
-  const Eigen::Matrix<double, 3, 2> N = tangents(q);
-  Eigen::Matrix<double, 4, 2> J;
-  for (int k = 0; k < 2; ++k) {
-    Eigen::Quaterniond imaginary;
-    imaginary.w() = 0;
-    imaginary.vec() = N.col(k);
-    J.col(k) = 0.5 * (imaginary * q).coeffs();
-  }
-  return J;
-}
-
-Eigen::Vector2d direction_minus(const Eigen::Quaterniond& y, const Eigen::Quaterniond& x) {
-  const Eigen::Vector3d from = direction(x);
-  const Eigen::Vector3d to = direction(y);
-  const Eigen::Vector3d axis = from.cross(to);
-  const double sine = axis.norm();
-  const double angle = std::atan2(sine, from.dot(to));
-  const double scale = sine < 1e-12 ? 1.0 : angle / sine;
-  return tangents(x).transpose() * (scale * axis);
-}
-
 bool DirectionManifold::Plus(const double* x, const double* delta, double* x_plus_delta) const {
-  Eigen::Map<Eigen::Quaterniond> result(x_plus_delta);
-  result = direction_plus(Eigen::Map<const Eigen::Quaterniond>(x),
-                          Eigen::Map<const Eigen::Vector2d>(delta));
+  const Eigen::Map<const Eigen::Quaterniond> q(x);
+  const Eigen::Map<const Eigen::Vector2d> u(delta);
+  Eigen::Map<Eigen::Quaterniond>{x_plus_delta} = (exponential(tangents(q) * u) * q).normalized();
   return true;
 }
 
 bool DirectionManifold::PlusJacobian(const double* x, double* jacobian) const {
-  Eigen::Map<RowMajor<4, 2>> J(jacobian);
-  J = direction_plus_jacobian(Eigen::Map<const Eigen::Quaterniond>(x));
+  Eigen::Map<RowMajor<4, 2>>{jacobian} = plus_jacobian(Eigen::Map<const Eigen::Quaterniond>(x));
   return true;
 }
 
 bool DirectionManifold::Minus(const double* y, const double* x, double* y_minus_x) const {
-  Eigen::Map<Eigen::Vector2d> u(y_minus_x);
-  u = direction_minus(Eigen::Map<const Eigen::Quaterniond>(y),
-                      Eigen::Map<const Eigen::Quaterniond>(x));
+  const Eigen::Map<const Eigen::Quaterniond> q(x);
+  const Eigen::Vector3d from = direction(q);
+  const Eigen::Vector3d to = direction(Eigen::Map<const Eigen::Quaterniond>(y));
+  const Eigen::Vector3d axis = from.cross(to);
+  const double sine = axis.norm();
+  const double angle = std::atan2(sine, from.dot(to));
+  const double scale = sine < 1e-12 ? 1.0 : angle / sine;
+  Eigen::Map<Eigen::Vector2d>{y_minus_x} = tangents(q).transpose() * (scale * axis);
   return true;
 }
 
 bool DirectionManifold::MinusJacobian(const double* x, double* jacobian) const {
   // The columns of the Jacobian of Plus are orthogonal with length 1/2.
-  Eigen::Map<RowMajor<2, 4>> J(jacobian);
-  J = 4 * direction_plus_jacobian(Eigen::Map<const Eigen::Quaterniond>(x)).transpose();
+  Eigen::Map<RowMajor<2, 4>>{jacobian} =
+      4 * plus_jacobian(Eigen::Map<const Eigen::Quaterniond>(x)).transpose();
   return true;
 }
 

@@ -23,13 +23,8 @@ using RowMajor = Eigen::Matrix<double, Rows, Columns, Eigen::RowMajor>;
 Eigen::Vector3d direction(const Eigen::Quaterniond& q);
 /// Returns dn/dq, columns in Eigen's order x y z w.
 Eigen::Matrix<double, 3, 4> direction_jacobian(const Eigen::Quaterniond& q);
-Eigen::Quaterniond direction_plus(const Eigen::Quaterniond& q, const Eigen::Vector2d& u);
-/// Returns d(q [+] u)/du at u = 0, rows in Eigen's order x y z w.
-Eigen::Matrix<double, 4, 2> direction_plus_jacobian(const Eigen::Quaterniond& q);
-/// Returns the u for which y and x [+] u have the same direction.
-Eigen::Vector2d direction_minus(const Eigen::Quaterniond& y, const Eigen::Quaterniond& x);
 
-/// Manifold of `direction`.
+/// Manifold of `direction`; `Minus` returns the u for which y and x [+] u have the same direction.
 class DirectionManifold : public ceres::Manifold {
  public:
   int AmbientSize() const override { return 4; }
