@@ -6,33 +6,6 @@
 #include "engine/methods/plane/plane_motion.h"
 
 namespace gpo {
-namespace {
-
-/// A frame's information over the shared unknowns (normal, gyroscope) and its own (phi if rotations
-/// are free, translation last).
-struct SplitInformation {
-  Eigen::MatrixXd ss, so, oo;
-};
-
-SplitInformation split(const Window& window,
-                       int frame,
-                       const FrameNormals& normals,
-                       RotationModel model) {
-  const auto& F = normals.JtJ;
-  if (model == RotationModel::free)
-    return {F.topLeftCorner<2, 2>(), F.topRightCorner<2, 6>(), F.bottomRightCorner<6, 6>()};
-  const int gyro = gyro_unknowns(window, model);
-  Eigen::MatrixXd M = Eigen::MatrixXd::Zero(5, 2 + gyro);
-  M.topLeftCorner<2, 2>().setIdentity();
-  if (gyro > 0) M.block<3, 3>(2, 2) = window.gyro->d_bias[frame];
-  if (gyro > 3) M.block<3, 1>(2, 5) = window.gyro->d_offset[frame];
-  return {M.transpose() * F.topLeftCorner<5, 5>() * M,
-          M.transpose() * F.topRightCorner<5, 3>(),
-          F.bottomRightCorner<3, 3>()};
-}
-
-}  // namespace
-
 SharedInformation prior_information(const Window& window,
                                     const UnknownsLayout& layout,
                                     double sigma_px) {
@@ -47,8 +20,16 @@ SharedInformation frame_information(const Window& window,
                                     int frame,
                                     const FrameNormals& normals,
                                     RotationModel model) {
-  const SplitInformation f = split(window, frame, normals, model);
-  return f.ss - f.so * solve_symmetric(f.oo, f.so.transpose());
+  const int gyro = gyro_unknowns(window, model);
+  const int own = model == RotationModel::free ? 6 : 3;
+  Eigen::MatrixXd M = Eigen::MatrixXd::Zero(8, 2 + gyro);  // d(u, phi, t) / d(shared unknowns)
+  M.topLeftCorner<2, 2>().setIdentity();
+  if (gyro > 0) M.block<3, 3>(2, 2) = window.gyro->d_bias[frame];
+  if (gyro > 3) M.block<3, 1>(2, 5) = window.gyro->d_offset[frame];
+  const Eigen::MatrixXd FM = normals.JtJ * M;
+  const auto os = FM.bottomRows(own);
+  return M.transpose() * FM -
+         os.transpose() * solve_symmetric(normals.JtJ.bottomRightCorner(own, own), os);
 }
 
 std::optional<double> normal_sigma_deg(const SharedInformation& information, double sigma_px) {
