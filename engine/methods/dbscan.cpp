@@ -1,6 +1,6 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/methods/candidates/density_clusters.h"
+#include "engine/geometry/pose.h"
 #include "engine/methods/candidates/homography_candidates.h"
 #include "engine/methods/common/window_checks.h"
 #include "engine/methods/initializers.h"
@@ -9,6 +9,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <iterator>
+#include <numeric>
 
 #include <Eigen/Cholesky>
 #include <Eigen/Geometry>
@@ -35,6 +38,61 @@ constexpr double kAmbiguousShare = 0.8;
 /// Least ratio of the rotation errors by which one of two likely peaks is selected.
 constexpr double kDecisiveFactor = 1.25;
 
+constexpr int kUnvisited = -2;
+
+struct Neighborhood {
+  std::vector<int> near;  ///< including the point itself
+  bool core = false;
+};
+
+std::vector<Neighborhood> neighborhoods(std::span<const WeightedDirection> points,
+                                        double radius_deg,
+                                        double least_weight) {
+  std::vector<Neighborhood> all(points.size());
+  for (Neighborhood& of : all) {
+    const WeightedDirection& point = points[&of - all.data()];
+    double weight = 0;
+    for (int b = 0; b < std::ssize(points); ++b) {
+      if (angle_deg(point.direction, points[b].direction) > radius_deg) continue;
+      of.near.push_back(b);
+      weight += points[b].weight;
+    }
+    of.core = weight >= least_weight;
+  }
+  return all;
+}
+
+/// Labels all core points that can be reached from `seed` over core points.
+void flood(int seed, int label, const std::vector<Neighborhood>& all, std::vector<int>& labels) {
+  std::vector<int> open{seed};
+  labels[seed] = label;
+  while (!open.empty()) {
+    const int a = open.back();
+    open.pop_back();
+    for (const int b : all[a].near) {
+      if (!all[b].core || labels[b] != kUnvisited) continue;
+      labels[b] = label;
+      open.push_back(b);
+    }
+  }
+}
+
+/// Renumbers the clusters by weight, the heaviest first.
+void sort_by_weight(std::span<const WeightedDirection> points,
+                    int clusters,
+                    std::vector<int>& labels) {
+  std::vector<double> weights(clusters, 0.0);
+  for (std::size_t k = 0; k < labels.size(); ++k) {
+    if (labels[k] != kNoise) weights[labels[k]] += points[k].weight;
+  }
+  std::vector<int> order(clusters);
+  std::iota(order.begin(), order.end(), 0);
+  std::ranges::stable_sort(order, std::greater{}, [&](int label) { return weights[label]; });
+  std::vector<int> rank(clusters);
+  for (int place = 0; place < clusters; ++place) rank[order[place]] = place;
+  for (int& label : labels) label = label == kNoise ? kNoise : rank[label];
+}
+
 struct Candidates {
   std::vector<HomographyCandidate> all;
   std::vector<int> possible;                 ///< indices of the feasible ones
@@ -58,8 +116,7 @@ Candidates cluster_candidates(const std::vector<std::vector<HomographyCandidate>
     c.possible.push_back(k);
     c.on_sphere.push_back({motion.normal, motion.tau.squaredNorm() / weights});
   }
-  c.label =
-      density_clusters(c.on_sphere, {.radius_deg = kRadiusDeg, .least_weight = kLeastShareOfCore});
+  c.label = density_clusters(c.on_sphere, kRadiusDeg, kLeastShareOfCore);
   return c;
 }
 
@@ -184,6 +241,29 @@ void reject_far_from(const Vector3d& normal, Candidates& candidates) {
 }
 
 }  // namespace
+
+std::vector<int> density_clusters(std::span<const WeightedDirection> points,
+                                  double radius_deg,
+                                  double least_weight) {
+  const std::vector<Neighborhood> all = neighborhoods(points, radius_deg, least_weight);
+  const int count = static_cast<int>(points.size());
+  std::vector<int> labels(points.size(), kUnvisited);
+  int clusters = 0;
+  for (int k = 0; k < count; ++k) {
+    if (all[k].core && labels[k] == kUnvisited) flood(k, clusters++, all, labels);
+  }
+  for (int k = 0; k < count; ++k) {
+    if (all[k].core) continue;
+    std::vector<int> cores;
+    std::ranges::copy_if(
+        all[k].near, std::back_inserter(cores), [&](int b) { return all[b].core; });
+    const auto nearest = std::ranges::min_element(
+        cores, {}, [&](int b) { return angle_deg(points[b].direction, points[k].direction); });
+    labels[k] = nearest == cores.end() ? kNoise : labels[*nearest];
+  }
+  sort_by_weight(points, clusters, labels);
+  return labels;
+}
 
 std::vector<NormalCluster> normal_clusters(
     const std::vector<std::vector<HomographyCandidate>>& candidates) {

@@ -7,6 +7,7 @@
 #include "engine/methods/plane/plane_solver.h"
 #include "engine/window/window.h"
 
+#include <span>
 #include <vector>
 
 #include <Eigen/Core>
@@ -45,6 +46,21 @@ Initialization initialize_pnp(const Window& window, const Watch& watch);
 /// translations by linear least squares. The window's rotations select the decompositions and are
 /// returned unchanged. Optimizes nothing.
 Initialization initialize_dbscan(const Window& window, const Watch& watch);
+
+struct WeightedDirection {
+  Eigen::Vector3d direction;  ///< unit length
+  double weight = 1;
+};
+
+inline constexpr int kNoise = -1;
+
+/// Returns the cluster of each direction by DBSCAN with angular distance: core points, with at
+/// least `least_weight` within the radius, itself included, share a cluster if they are within it;
+/// any other point joins that of the nearest core point within the radius or is kNoise. Cluster 0
+/// is the heaviest. The order of the points affects only the numbers of equally heavy clusters.
+std::vector<int> density_clusters(std::span<const WeightedDirection> points,
+                                  double radius_deg,
+                                  double least_weight);
 
 /// A cluster of feasible normals of many frames.
 struct NormalCluster {

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/geometry/pose.h"
 #include "engine/geometry/statistics.h"
-#include "engine/methods/candidates/density_clusters.h"
 #include "engine/methods/candidates/homography_candidates.h"
 #include "engine/methods/common/window_checks.h"
 #include "engine/methods/initializers.h"
@@ -226,7 +225,7 @@ WeightedDirection at(double longitude_deg, double weight = 1) {
 }
 
 std::vector<int> clusters_of(const std::vector<WeightedDirection>& points) {
-  return density_clusters(points, {.radius_deg = 1.01, .least_weight = 3});
+  return density_clusters(points, 1.01, 3);
 }
 
 TEST(DensityClusters, ChainCorePointsAndLeaveNoiseFromTheHeaviestOn) {
@@ -240,7 +239,7 @@ TEST(DensityClusters, BorderPointsJoinNearestCore) {
   // 2.4 has two neighbors, core points of two clusters, 0.9 and 0.8 away.
   const std::vector<WeightedDirection> points{
       at(0.5), at(0.7), at(1), at(1.5), at(2.4), at(3.2), at(3.7), at(3.9), at(4.2)};
-  const auto labels = density_clusters(points, {.radius_deg = 1.01, .least_weight = 4});
+  const auto labels = density_clusters(points, 1.01, 4);
   EXPECT_THAT(labels, ElementsAre(1, 1, 1, 1, 0, 0, 0, 0, 0));
 }
 
