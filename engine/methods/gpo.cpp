@@ -28,4 +28,13 @@ Initialization initialize_gpo(const Window& window,
   return make_result(window, motion, solver);
 }
 
+Initialization initialize_closed_form(const Window& window, const Watch& /*watch*/) {
+  if (auto reason = reason_not_to_try(window)) return failed(*reason);
+  auto motion = closed_form_motion(window);
+  if (!motion) return failed("a frame has no homography");
+  for (int i = 1; i < window.frame_count(); ++i)
+    motion->tau[i] = translation_given_normal(window, i, motion->normal);
+  return make_result(window, *motion, {});
+}
+
 }  // namespace gpo
