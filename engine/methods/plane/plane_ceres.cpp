@@ -30,22 +30,13 @@ struct Blocks {
 
 /// R_wc of a frame with its derivative for each parameter block: R_wc exp(moves dp).
 struct Rotation {
-  using Moves = Eigen::Matrix<double, 3, Eigen::Dynamic, 0, 3, 4>;
   Matrix3d R_wc;
-  std::vector<Moves> moves = {};
+  std::vector<GyroColumns> moves = {};
 };
 
 bool is_shared(const PlaneUnknowns& unknowns) { return unknowns.rotations == RotationModel::bias; }
 bool is_own(const PlaneUnknowns& unknowns) {
   return unknowns.rotations == RotationModel::free || unknowns.gyro_noise;
-}
-
-/// Multiplies a rotation by exp(phi), with the derivative `moves` of phi.
-void turn(const Vector3d& phi, const Rotation::Moves& moves, Rotation& rotation) {
-  const Matrix3d R = so3_exp(phi);
-  for (Rotation::Moves& before : rotation.moves) before = R.transpose() * before;
-  rotation.R_wc = rotation.R_wc * R;
-  rotation.moves.emplace_back(so3_right_jacobian(phi) * moves);
 }
 
 Rotation rotation_at(const PlaneTask& task,
@@ -54,23 +45,21 @@ Rotation rotation_at(const PlaneTask& task,
                      const double* const* parameters) {
   Rotation rotation{R_wc_start};
   if (is_shared(task.unknowns)) {
-    rotation.R_wc = task.window.R_wc[frame];
-    const GyroSensitivity& gyro = *task.window.gyro;
+    const double* const block = *parameters++;
     const int size = gyro_unknowns(task.window, task.unknowns.rotations);
-    Rotation::Moves moves(3, size);
-    moves.leftCols<3>() = gyro.d_bias[frame];
-    Eigen::VectorXd change = Eigen::Map<const Eigen::VectorXd>(*parameters++, size);
-    change.head<3>() -= gyro.bias_rad_s;
-    Vector3d curve = Vector3d::Zero();
-    if (size == 4) {
-      curve = gyro.d2_offset[frame] * change(3);
-      moves.col(3) = gyro.d_offset[frame] + curve;
-    }
-    const Vector3d phi = moves * change - 0.5 * change(size - 1) * curve;
-    turn(phi, moves, rotation);
+    PlaneMotion motion;
+    motion.bias_rad_s = Eigen::Map<const Vector3d>(block);
+    if (size == 4) motion.time_offset_s = block[3];
+    rotation.R_wc = gyro_rotation(task.window, frame, motion);
+    rotation.moves.push_back(gyro_columns(task.window, motion, frame, size));
   }
-  if (is_own(task.unknowns))
-    turn(Eigen::Map<const Vector3d>(*parameters), Matrix3d::Identity(), rotation);
+  if (is_own(task.unknowns)) {
+    const Vector3d phi = Eigen::Map<const Vector3d>(*parameters);
+    const Matrix3d R = so3_exp(phi);
+    for (GyroColumns& before : rotation.moves) before = R.transpose() * before;
+    rotation.R_wc = rotation.R_wc * R;
+    rotation.moves.emplace_back(so3_right_jacobian(phi));
+  }
   return rotation;
 }
 
