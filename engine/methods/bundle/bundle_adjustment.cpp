@@ -8,6 +8,7 @@
 #include "engine/methods/residuals/point_view.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <utility>
@@ -81,10 +82,47 @@ class ObservationCost : public ceres::CostFunction {
   bool on_plane_;
 };
 
-int widest_frame(std::span<const Pose> cameras) {
-  const auto widest = std::ranges::max_element(
+/// Parameter block of a camera: the unit quaternion of R_wc (x y z w) and p_wc. Its tangent space
+/// has 3 dimensions of rotation and 3 of position.
+using PoseBlock = std::array<double, 7>;
+using FreePose =
+    ceres::ProductManifold<ceres::EigenQuaternionManifold, ceres::EuclideanManifold<3>>;
+using PoseOnSphere =
+    ceres::ProductManifold<ceres::EigenQuaternionManifold, ceres::SphereManifold<3>>;
+
+std::vector<PoseBlock> pose_blocks(std::span<const Pose> cameras) {
+  std::vector<PoseBlock> blocks(cameras.size());
+  for (std::size_t i = 0; i < cameras.size(); ++i) {
+    Eigen::Map<Eigen::Quaterniond>{blocks[i].data()} =
+        Eigen::Quaterniond(cameras[i].R_wc).normalized();
+    Eigen::Map<Vector3d>{blocks[i].data() + 4} = cameras[i].p_wc;
+  }
+  return blocks;
+}
+
+Pose pose_of(const PoseBlock& block) {
+  const Eigen::Map<const Eigen::Quaterniond> q(block.data());
+  return {q.normalized().toRotationMatrix(), Eigen::Map<const Vector3d>(block.data() + 4)};
+}
+
+/// Adds the cameras as unknowns of elimination group 1 and holds the first one. The farthest camera
+/// keeps its distance from the origin if the scale is free.
+void add_pose_blocks(std::span<const Pose> cameras,
+                     bool free_scale,
+                     std::span<PoseBlock> blocks,
+                     ceres::Problem& problem,
+                     ceres::ParameterBlockOrdering& ordering) {
+  const auto farthest = std::ranges::max_element(
       cameras, {}, [](const Pose& camera) { return camera.p_wc.squaredNorm(); });
-  return static_cast<int>(widest - cameras.begin());
+  auto* const free_pose = new FreePose;  // owned by the problem
+  for (std::size_t i = 0; i < blocks.size(); ++i) {
+    double* const block = blocks[i].data();
+    ceres::Manifold* manifold = free_pose;
+    if (free_scale && &cameras[i] == &*farthest) manifold = new PoseOnSphere;
+    problem.AddParameterBlock(block, 7, manifold);
+    ordering.AddElementToGroup(block, 1);
+  }
+  problem.SetParameterBlockConstant(blocks.front().data());
 }
 
 struct PointTally {
@@ -180,8 +218,7 @@ AdjustedBundle adjust_bundle(const Matrix3d& K,
   sharing.loss_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
   ceres::Problem problem(sharing);
   auto ordering = std::make_shared<ceres::ParameterBlockOrdering>();
-  const auto scale_frame = on_plane ? std::nullopt : std::optional(widest_frame(start.cameras));
-  add_pose_blocks(cameras, scale_frame, problem, *ordering);
+  add_pose_blocks(start.cameras, !on_plane, cameras, problem, *ordering);
   if (on_plane) {
     q_normal = rotation_from_z_axis(start.normal);
     problem.AddParameterBlock(q_normal.coeffs().data(), 4, new DirectionManifold);

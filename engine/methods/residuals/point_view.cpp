@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/methods/residuals/point_view.h"
 
+#include "engine/geometry/pose.h"
+
 namespace gpo {
 namespace {
 
@@ -15,11 +17,6 @@ Eigen::Matrix<double, 3, 4> inverse_rotation_jacobian(const Eigen::Quaterniond& 
   J.col(3) = -2 * u.cross(v);
   return J;
 }
-
-using FreePose =
-    ceres::ProductManifold<ceres::EigenQuaternionManifold, ceres::EuclideanManifold<3>>;
-using PoseOnSphere =
-    ceres::ProductManifold<ceres::EigenQuaternionManifold, ceres::SphereManifold<3>>;
 
 }  // namespace
 
@@ -55,37 +52,6 @@ PlaneDepth depth_on_plane(const Intrinsics& intrinsics,
   return {-normal.dot(ray_1),
           -ray_1.transpose(),
           -normal.transpose() * intrinsics.K_inverse.leftCols<2>()};
-}
-
-std::vector<PoseBlock> pose_blocks(std::span<const Pose> cameras) {
-  std::vector<PoseBlock> blocks(cameras.size());
-  for (std::size_t i = 0; i < cameras.size(); ++i) {
-    Eigen::Map<Eigen::Quaterniond> q(blocks[i].data());
-    q = Eigen::Quaterniond(cameras[i].R_wc).normalized();
-    Eigen::Map<Eigen::Vector3d> p(blocks[i].data() + 4);
-    p = cameras[i].p_wc;
-  }
-  return blocks;
-}
-
-Pose pose_of(const PoseBlock& block) {
-  const Eigen::Map<const Eigen::Quaterniond> q(block.data());
-  return {q.normalized().toRotationMatrix(), Eigen::Map<const Eigen::Vector3d>(block.data() + 4)};
-}
-
-void add_pose_blocks(std::span<PoseBlock> cameras,
-                     std::optional<int> scale_frame,
-                     ceres::Problem& problem,
-                     ceres::ParameterBlockOrdering& ordering) {
-  auto* const free_pose = new FreePose;  // owned by the problem
-  for (std::size_t i = 0; i < cameras.size(); ++i) {
-    double* const block = cameras[i].data();
-    ceres::Manifold* manifold = free_pose;
-    if (scale_frame && static_cast<std::size_t>(*scale_frame) == i) manifold = new PoseOnSphere;
-    problem.AddParameterBlock(block, 7, manifold);
-    ordering.AddElementToGroup(block, 1);
-  }
-  problem.SetParameterBlockConstant(cameras.front().data());
 }
 
 }  // namespace gpo

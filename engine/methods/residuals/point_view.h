@@ -2,16 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "engine/geometry/pose.h"
-
-#include <array>
-#include <optional>
-#include <span>
-#include <vector>
-
 #include <Eigen/Core>
 #include <Eigen/Geometry>
-#include <ceres/ceres.h>
 
 namespace gpo {
 
@@ -50,19 +42,5 @@ struct PlaneDepth {
 PlaneDepth depth_on_plane(const Intrinsics& intrinsics,
                           const Eigen::Vector3d& normal,
                           const Eigen::Vector2d& pixel_1);
-
-/// Parameter block of a camera: the unit quaternion of R_wc (x y z w) and p_wc. Its tangent space
-/// has 3 dimensions of rotation and 3 of position.
-using PoseBlock = std::array<double, 7>;
-
-std::vector<PoseBlock> pose_blocks(std::span<const Pose> cameras);
-Pose pose_of(const PoseBlock& block);
-
-/// Adds the cameras as unknowns of elimination group 1 and holds the first one. The camera of
-/// `scale_frame` keeps its distance from the origin.
-void add_pose_blocks(std::span<PoseBlock> cameras,
-                     std::optional<int> scale_frame,
-                     ceres::Problem& problem,
-                     ceres::ParameterBlockOrdering& ordering);
 
 }  // namespace gpo
