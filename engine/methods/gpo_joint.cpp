@@ -6,7 +6,6 @@
 #include "engine/methods/common/window_checks.h"
 #include "engine/methods/initializers.h"
 #include "engine/methods/joint/joint_solution.h"
-#include "engine/methods/joint/joint_uncertainty.h"
 #include "engine/methods/plane/linear_solutions.h"
 #include "engine/methods/plane/plane_result.h"
 #include "engine/methods/plane/plane_solver.h"

@@ -1,10 +1,9 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/methods/joint/joint_scales.h"
-
 #include "engine/geometry/camera.h"
 #include "engine/geometry/decompositions.h"
 #include "engine/geometry/statistics.h"
+#include "engine/methods/joint/joint_uncertainty.h"
 
 #include <algorithm>
 #include <cmath>
@@ -29,12 +28,6 @@ constexpr double kMedianOfSquares = 1.3863;  // chi-square of two numbers
 constexpr std::size_t kLeastTracks = 8;
 /// Candidates for the standard deviation [pixel_unit].
 constexpr double kLens[] = {0, 0.05, 0.1, 0.2, 0.35, 0.6, 1, 1.8, 3};
-
-double middle_of(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::ranges::nth_element(values, middle);
-  return *middle;
-}
 
 /// The lens residual with all other unknowns eliminated: information and gradient at zero [px^2].
 struct LensProblem {
@@ -94,7 +87,7 @@ double noise_px(const Model& model, const Predictions& predictions) {
   const double unknowns = layout.at_velocity(0) - layout.lens - layout.lens_parameters +
                           2.0 * static_cast<double>(model.tracks().size());
   return std::max(kLeastNoise_px,
-                  middle_of(std::move(lengths)) / kMedianOfRayleigh *
+                  median(std::move(lengths)) / kMedianOfRayleigh *
                       std::sqrt(residuals / std::max(1.0, residuals - unknowns)));
 }
 
@@ -121,9 +114,8 @@ double reference_noise_px(const Model& model,
   if (squares.size() < kLeastTracks) return scales.reference_px;
   // Planes and cameras absorb a homography of the positions.
   const auto count = static_cast<double>(squares.size());
-  const double of_reference =
-      count / (count - 4) * middle_of(std::move(squares)) / kMedianOfSquares -
-      middle_of(std::move(variances));
+  const double of_reference = count / (count - 4) * median(std::move(squares)) / kMedianOfSquares -
+                              median(std::move(variances));
   return std::max(kLeastShare * scales.sigma_px, std::sqrt(std::max(0.0, of_reference)));
 }
 

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/methods/joint/joint_solution.h"
 
-#include "engine/methods/joint/joint_scales.h"
 #include "engine/methods/joint/joint_uncertainty.h"
 #include "engine/methods/plane/linear_solutions.h"
 
