@@ -29,20 +29,6 @@ struct JointRows {
   Index of_plane(int plane) const { return of_gyro() + gyro + UnknownsLayout::of_plane(plane); }
 };
 
-/// Effect of the accelerations on all rows.
-struct Pulled {
-  VectorXd step;
-  MatrixXd less;  ///< decrease of the covariance
-};
-
-Pulled pulled_rows(const Uncertainty& u, const UncertainPoses& poses, const PosePull& pull) {
-  // A bias that is not among the rows is correlated with none of them.
-  MatrixXd with_poses = MatrixXd::Zero(u.joint_covariance.rows(), pull.gradient.size());
-  for (std::size_t k = 0; k < poses.joint_rows.size(); ++k)
-    with_poses.col(static_cast<Index>(k)) = u.joint_covariance.col(poses.joint_rows[k]);
-  return {-with_poses * pull.gradient, with_poses * pull.information * with_poses.transpose()};
-}
-
 Plane moved_plane(const Plane& plane, const VectorXd& step) {
   Plane moved{moved_normal(plane.normal, step.head<2>()), plane.distance};
   if (step.size() == 3) moved.distance *= std::exp(-step(2));
@@ -97,10 +83,14 @@ std::optional<Initialization> pulled(const Window& window,
                                      const UncertainPoses& poses,
                                      const PosePull& pull) {
   const JointRows rows{std::ssize(result.cameras), result.uncertainty->joint_bias_rows};
-  const Pulled all = pulled_rows(*result.uncertainty, poses, pull);
+  const MatrixXd& covariance = result.uncertainty->joint_covariance;
+  // A bias that is not among the rows is correlated with none of them.
+  MatrixXd with_poses = MatrixXd::Zero(covariance.rows(), pull.gradient.size());
+  for (std::size_t k = 0; k < poses.joint_rows.size(); ++k)
+    with_poses.col(static_cast<Index>(k)) = covariance.col(poses.joint_rows[k]);
   Initialization moved = result;
-  lower_covariances(rows, all.less, moved);
-  move(window, rows, all.step, moved);
+  lower_covariances(rows, with_poses * pull.information * with_poses.transpose(), moved);
+  move(window, rows, -with_poses * pull.gradient, moved);
   set_plane_uncertainties(moved);
   const Window seen = moved.row_delay_s
                           ? without_rolling_shutter(window,

@@ -174,9 +174,9 @@ std::vector<std::optional<Eigen::Matrix2d>> neighbors_spread(const SolvedPlanes&
         (kFreedomOfQuarters + kFreedomOfBlocks);
     const Eigen::Matrix2d of_noise = noise.block<2, 2>(at, at);
     if (mean > kLeastDisagreement && trace(quarters->spread) > mean * trace(noise))
-      spreads[k] = quarters->spread.block<2, 2>(at, at);
+      spreads[k] = quarters->spread.block<2, 2>(at, at) - of_noise;
     else if (mean > 1)
-      spreads[k] = mean * of_noise;
+      spreads[k] = (mean - 1) * of_noise;
   }
   return spreads;
 }

@@ -30,33 +30,27 @@ int tracks_of(const PlaneObservations& observations) {
   return static_cast<int>(tracks.size());
 }
 
-/// Adds the covariance of a frame's camera center and the variance of its distance ratio 1 - n.tau.
-void add_frame(const PlaneMotion& motion,
-               int frame,
-               const Eliminated& f,
-               const Spread& spread,
-               NoiseSpread& result) {
-  const SharedMatrix& Y = spread.shared;
-  const Eigen::MatrixXd cross = -Y * f.gain.transpose() + spread.cross[frame];
-  const Eigen::MatrixXd gained = f.gain * spread.cross[frame];
-  const Eigen::MatrixXd own =
-      f.gain * Y * f.gain.transpose() - gained - gained.transpose() + spread.own[frame];
-  const Matrix3d t = own.bottomRightCorner<3, 3>();
-  const Eigen::Matrix<double, 2, 3> ut = cross.topRightCorner<2, 3>();
-  const Matrix3d& R = motion.R_wc[frame];
-  result.centers.emplace_back(R * t * R.transpose());
-  const Eigen::Vector2d d_u = -(normal_tangents(motion.normal).transpose() * motion.tau[frame]);
-  const Vector3d d_t = -(R.transpose() * motion.normal);
-  const double ratio_variance =
-      d_u.dot(Y.topLeftCorner<2, 2>() * d_u) + 2 * d_u.dot(ut * d_t) + d_t.dot(t * d_t);
-  result.distance_ratios.push_back(std::max(0.0, ratio_variance));
-}
-
-/// Returns the covariances of the main normal, the centers and the distance ratios.
+/// Returns the covariances of the main normal and the camera centers, and the variances of the
+/// distance ratios 1 - n.tau.
 NoiseSpread marginals(const PlaneMotion& motion, const Bread& bread, const Spread& spread) {
-  NoiseSpread result{spread.shared.topLeftCorner<2, 2>(), {Matrix3d::Zero()}, {0}};
-  for (int i = 1; i < std::ssize(motion.tau); ++i)
-    add_frame(motion, i, bread.frames[i], spread, result);
+  const SharedMatrix& Y = spread.shared;
+  NoiseSpread result{Y.topLeftCorner<2, 2>(), {Matrix3d::Zero()}, {0}};
+  for (int i = 1; i < std::ssize(motion.tau); ++i) {
+    const auto& gain = bread.frames[i].gain;
+    const Eigen::MatrixXd cross = -Y * gain.transpose() + spread.cross[i];
+    const Eigen::MatrixXd gained = gain * spread.cross[i];
+    const Eigen::MatrixXd own =
+        gain * Y * gain.transpose() - gained - gained.transpose() + spread.own[i];
+    const Matrix3d t = own.bottomRightCorner<3, 3>();
+    const Eigen::Matrix<double, 2, 3> ut = cross.topRightCorner<2, 3>();
+    const Matrix3d& R = motion.R_wc[i];
+    result.centers.emplace_back(R * t * R.transpose());
+    const Eigen::Vector2d d_u = -(normal_tangents(motion.normal).transpose() * motion.tau[i]);
+    const Vector3d d_t = -(R.transpose() * motion.normal);
+    const double ratio_variance =
+        d_u.dot(Y.topLeftCorner<2, 2>() * d_u) + 2 * d_u.dot(ut * d_t) + d_t.dot(t * d_t);
+    result.distance_ratios.push_back(std::max(0.0, ratio_variance));
+  }
   return result;
 }
 
@@ -145,19 +139,6 @@ void add_typical_lens(const Sandwich& sandwich, Uncertainty& result) {
 }
 
 using OfPlanes = std::vector<std::optional<Eigen::Matrix2d>>;
-
-/// Returns `neighbors_spread` of each plane's normal in excess of `flat`.
-OfPlanes neighbors_beyond(const SolvedPlanes& solved,
-                          RotationModel model,
-                          double sigma_px,
-                          const SharedMatrix& flat) {
-  OfPlanes neighbors = neighbors_spread(solved, model, sigma_px, flat);
-  for (std::size_t k = 0; k < neighbors.size(); ++k) {
-    const int at = UnknownsLayout::of_plane(static_cast<int>(k));
-    if (neighbors[k]) *neighbors[k] -= flat.block<2, 2>(at, at);
-  }
-  return neighbors;
-}
 
 /// Adds the covariances of all planes' normals and distances from noise, neighbors and bend. The
 /// latter two are empty for a held gyroscope: its errors would affect both, and it has its own
@@ -280,7 +261,7 @@ std::optional<Uncertainty> uncertainty_of(const SolvedPlanes& solved,
   OfPlanes neighbors(observations.plane_count());
   OfPlanes bends(observations.plane_count());
   if (!holds_gyro && errors != Errors::of_noise) {
-    neighbors = neighbors_beyond(solved, model, sigma_px, spread.shared);
+    neighbors = neighbors_spread(solved, model, sigma_px, spread.shared);
     bends = bends_of(solved, sigma_px);
   }
   result.noise = marginals(motion, bread, spread);
