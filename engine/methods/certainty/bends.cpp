@@ -5,7 +5,7 @@
 #include "engine/geometry/decompositions.h"
 #include "engine/methods/certainty/sandwich.h"
 #include "engine/methods/certainty/shared_information.h"
-#include "engine/methods/certainty/uncertainty.h"
+#include "engine/methods/certainty/solution_moves.h"
 #include "engine/methods/plane/plane_weights.h"
 #include "engine/methods/plane/rolling_shutter.h"
 

@@ -265,4 +265,29 @@ Eigen::MatrixXd joint_covariance(const Sandwich& sandwich,
   return with_blocks_of(square + M * rest * M.transpose(), blocks, shrunk) + square_of(of_others);
 }
 
+void add_to_marginals(const PlaneMotion& motion, const Eigen::MatrixXd& change, Uncertainty& u) {
+  const auto add = [](double variance, double& sigma) {
+    sigma = std::sqrt(std::max(0.0, sigma * sigma + variance));
+  };
+  const auto tangents = normal_tangents(motion.normal);
+  const Eigen::Index gyro_at = 3 * (std::ssize(motion.tau) - 1);
+  const Eigen::Index planes_at = change.rows() - 3 * std::ssize(u.others) - 2;
+  for (std::size_t i = 1; i < motion.tau.size(); ++i) {
+    const auto at = static_cast<Eigen::Index>(3 * (i - 1));
+    u.center_covariances[i] += change.block<3, 3>(at, at);
+    Eigen::VectorXd ratio = Eigen::VectorXd::Zero(change.rows());
+    ratio.segment<3>(at) = motion.normal;
+    ratio.segment<2>(planes_at) = -(tangents.transpose() * motion.tau[i]);
+    add(ratio.dot(change * ratio), u.distance_ratio_sigmas[i]);
+  }
+  const Eigen::Index gyro = planes_at - gyro_at;
+  if (u.bias_covariance && gyro > 0) *u.bias_covariance += change.block<3, 3>(gyro_at, gyro_at);
+  if (u.time_offset_sigma_s && gyro > 3)
+    add(change(gyro_at + 3, gyro_at + 3), *u.time_offset_sigma_s);
+  for (std::size_t k = 0; k < u.others.size(); ++k) {
+    const Eigen::Index at = planes_at + UnknownsLayout::of_plane(static_cast<int>(k) + 1) + 2;
+    add(change(at, at), u.others[k].log_distance_sigma);
+  }
+}
+
 }  // namespace gpo

@@ -4,6 +4,7 @@
 
 // Displacements of a solution by errors of the gyroscope, the lens and the readout.
 #include "engine/methods/certainty/sandwich.h"
+#include "engine/methods/common/initialization.h"
 
 #include <optional>
 #include <span>
@@ -51,5 +52,9 @@ Eigen::MatrixXd joint_covariance(const Sandwich& sandwich,
                                  double degrees_of_freedom,
                                  std::span<const SolutionMove> of_image,
                                  const SharedMatrix& shared);
+
+/// Adds a change of `Uncertainty::joint_covariance`, in the order of its rows, to the covariances
+/// of centers, bias, time offset and distances.
+void add_to_marginals(const PlaneMotion& motion, const Eigen::MatrixXd& change, Uncertainty& u);
 
 }  // namespace gpo

@@ -31,8 +31,4 @@ std::optional<Uncertainty> uncertainty_of(const SolvedPlanes& solved,
                                           RotationModel rotations,
                                           Errors errors = Errors::all);
 
-/// Adds a change of `Uncertainty::joint_covariance`, in the order of its rows, to the covariances
-/// of centers, bias, time offset and distances.
-void add_to_marginals(const PlaneMotion& motion, const Eigen::MatrixXd& change, Uncertainty& u);
-
 }  // namespace gpo

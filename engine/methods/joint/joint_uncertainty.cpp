@@ -3,7 +3,7 @@
 #include "engine/methods/joint/joint_uncertainty.h"
 
 #include "engine/methods/certainty/sandwich.h"
-#include "engine/methods/certainty/uncertainty.h"
+#include "engine/methods/certainty/solution_moves.h"
 
 #include <algorithm>
 #include <cmath>
