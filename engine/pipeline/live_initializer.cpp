@@ -10,7 +10,6 @@
 #include "engine/pipeline/live_samples.h"
 #include "engine/pipeline/method_defaults.h"
 #include "engine/pipeline/pipeline.h"
-#include "engine/pipeline/travel.h"
 
 #include <algorithm>
 #include <array>
