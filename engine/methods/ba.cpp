@@ -131,14 +131,6 @@ Initialization result_on_plane(const Window& window, const AdjustedBundle& adjus
   return result;
 }
 
-template <PlaneNormal normal>
-Initialization initialize_on_plane(const Window& window, const Watch& watch) {
-  const Refinement refine = [](const Window& w, const Initialization& start, const Watch& s) {
-    return refine_on_plane(w, start, normal, s);
-  };
-  return refined_start(window, {"DBSCAN", initialize_dbscan}, refine, watch);
-}
-
 }  // namespace
 
 Initialization refine_bundle(const Window& window,
@@ -158,13 +150,9 @@ Initialization refine_bundle(const Window& window,
   return trusted(window, std::move(result));
 }
 
-Initialization initialize_ba(const Window& window, const Watch& watch) {
-  return refined_start(window, {"DBSCAN", initialize_dbscan}, refine_bundle, watch);
-}
-
+template <PlaneNormal normal>
 Initialization refine_on_plane(const Window& window,
                                const Initialization& start,
-                               PlaneNormal normal,
                                const Watch& watch) {
   const auto is_inlier = [&](int frame, int track) { return bool{window.inlier[frame][track]}; };
   const AdjustedBundle adjusted = adjust_bundle(
@@ -178,16 +166,11 @@ Initialization refine_on_plane(const Window& window,
   return trusted(window, result_on_plane(window, adjusted));
 }
 
-Initialization initialize_pnp_ba(const Window& window, const Watch& watch) {
-  return refined_start(window, {"PnP", initialize_pnp}, refine_bundle, watch);
-}
-
-Initialization initialize_pba(const Window& window, const Watch& watch) {
-  return initialize_on_plane<PlaneNormal::free>(window, watch);
-}
-
-Initialization initialize_fpba(const Window& window, const Watch& watch) {
-  return initialize_on_plane<PlaneNormal::held>(window, watch);
-}
+template Initialization refine_on_plane<PlaneNormal::free>(const Window&,
+                                                           const Initialization&,
+                                                           const Watch&);
+template Initialization refine_on_plane<PlaneNormal::held>(const Window&,
+                                                           const Initialization&,
+                                                           const Watch&);
 
 }  // namespace gpo

@@ -77,22 +77,15 @@ std::vector<NormalCluster> normal_clusters(
 
 /// Bundle adjustment over all poses and points from `start`, with all tracks if
 /// `Window::all_tracks`, else the inliers. The plane is fitted to the adjusted inlier points, which
-/// are returned as they are, on the plane or off it.
+/// are returned as they are, on the plane or off it. The paper's BA from `initialize_dbscan`, and
+/// its "BA with PnP", the vision part of VINS, from `initialize_pnp`.
 Initialization refine_bundle(const Window& window, const Initialization& start, const Watch& watch);
-/// `refine_bundle` from `initialize_dbscan` (the paper's BA).
-Initialization initialize_ba(const Window& window, const Watch& watch);
-/// `refine_bundle` from `initialize_pnp` (the paper's "BA with PnP", the vision part of VINS).
-Initialization initialize_pnp_ba(const Window& window, const Watch& watch);
 
 /// Bundle adjustment of the inliers with all points on one plane, from the poses and the plane of
-/// `start`.
+/// `start`. The paper's PBA (free normal) and FPBA (held) from `initialize_dbscan`.
+template <PlaneNormal normal>
 Initialization refine_on_plane(const Window& window,
                                const Initialization& start,
-                               PlaneNormal normal,
                                const Watch& watch);
-/// `refine_on_plane` with a free normal, from `initialize_dbscan` (the paper's PBA).
-Initialization initialize_pba(const Window& window, const Watch& watch);
-/// The same with the normal held (the paper's FPBA).
-Initialization initialize_fpba(const Window& window, const Watch& watch);
 
 }  // namespace gpo

@@ -23,6 +23,15 @@ Initialization plain(const Window& window, const MethodOptions& /*options*/, con
   return initialize(window, watch);
 }
 
+constexpr StartMethod kDbscan{"DBSCAN", initialize_dbscan};
+constexpr StartMethod kPnp{"PnP", initialize_pnp};
+
+/// Adapts a method that refines the result of another one.
+template <const StartMethod& start, Refinement refine>
+Initialization refined(const Window& window, const MethodOptions& /*options*/, const Watch& watch) {
+  return refined_start(window, start, refine, watch);
+}
+
 /// Adds the window's other planes to the result of a method that estimates only one.
 void add_planes(const Window& window, Initialization& result) {
   result.planes.push_back({window.leader, result.plane});
@@ -81,12 +90,6 @@ void doubt(Verdict& verdict) {
       "without a tenth of the tracks the method mostly fails or finds another plane normal";
 }
 
-Initialization refine_with_normal(const Window& window,
-                                  const Initialization& start,
-                                  const Watch& watch) {
-  return refine_on_plane(window, start, PlaneNormal::free, watch);
-}
-
 std::vector<Method> our_methods() {
   using enum MethodFamily;
   using enum Inliers;
@@ -102,15 +105,19 @@ std::vector<Method> our_methods() {
       Method{"dbscan",     "DBSCAN",     0xF0E442, aggregation,  true,  planes, known,        {}, plain<initialize_dbscan>,
              "Density peak of the normals from the decomposed homographies of all frames, "
              "translations by least squares. Assumes one plane and correct rotations"},
-      Method{"ba",         "BA",         0xD55E00, optimization, false, planes, free,         {}, plain<initialize_ba>,
+      Method{"ba",         "BA",         0xD55E00, optimization, false, planes, free,         {},
+             refined<kDbscan, refine_bundle>,
              "Bundle adjustment of poses and free points, started from DBSCAN. Assumes parallax, "
              "but no plane"},
-      Method{"pnp_ba",     "PnP + BA",   0xCC79A7, optimization, false, planes, free,         {}, plain<initialize_pnp_ba>,
+      Method{"pnp_ba",     "PnP + BA",   0xCC79A7, optimization, false, planes, free,         {},
+             refined<kPnp, refine_bundle>,
              "Bundle adjustment of poses and free points, started from PnP. Assumes parallax, but "
              "no plane"},
-      Method{"pba",        "PBA",        0x8F3FFF, optimization, true,  planes, free,         {}, plain<initialize_pba>,
+      Method{"pba",        "PBA",        0x8F3FFF, optimization, true,  planes, free,         {},
+             refined<kDbscan, refine_on_plane<PlaneNormal::free>>,
              "Planar bundle adjustment of poses, a plane and the points on it. Assumes one plane"},
-      Method{"fpba",       "FPBA",       0x6E7681, optimization, true,  planes, free,         {}, plain<initialize_fpba>,
+      Method{"fpba",       "FPBA",       0x6E7681, optimization, true,  planes, free,         {},
+             refined<kDbscan, refine_on_plane<PlaneNormal::held>>,
              "Planar bundle adjustment with the normal fixed at DBSCAN's. Assumes one plane and a "
              "correct normal"},
       Method{"closed_form","Closed form",0x56B4E9, aggregation,  true,  planes, known,        {}, plain<initialize_closed_form>,
@@ -125,7 +132,7 @@ std::vector<Method> our_methods() {
   for (Method& method : table) {
     method.resampled = method.rotations.has_value();
     if (method.key == "ba" || method.key == "pnp_ba") method.restart = refine_bundle;
-    if (method.key == "pba") method.restart = refine_with_normal;
+    if (method.key == "pba") method.restart = refine_on_plane<PlaneNormal::free>;
   }
   return table;
 }

@@ -49,7 +49,7 @@ double noise_px(double summed_squares, double residuals, double unknowns);
 
 /// A method whose result another one refines.
 struct StartMethod {
-  std::string title;  ///< for people
+  const char* title;  ///< for people
   Initialization (*initialize)(const Window& window, const Watch& watch);
 };
 

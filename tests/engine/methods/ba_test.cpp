@@ -35,7 +35,7 @@ void slip_tracks(Simulation& truth) {
 Initialization refine_free_plane(const Window& window,
                                  const Initialization& start,
                                  const Watch& w) {
-  return refine_on_plane(window, start, PlaneNormal::free, w);
+  return refine_on_plane<PlaneNormal::free>(window, start, w);
 }
 
 class BundleAdjustmentOnMotion : public testing::TestWithParam<Motion> {};
@@ -178,7 +178,7 @@ TEST(PlaneAdjustment, CountsUnknownsAndResidualsLikeThePaper) {
   const Simulation truth = simulate({});
   const Initialization start = perturbed_truth(truth);
   const Initialization free = refine_free_plane(truth.window, start, {});
-  const Initialization held = refine_on_plane(truth.window, start, PlaneNormal::held, {});
+  const Initialization held = refine_on_plane<PlaneNormal::held>(truth.window, start, {});
   EXPECT_EQ(free.solver.unknowns, 6 * 29 + 2 * 150 + 2);
   EXPECT_EQ(held.solver.unknowns, 6 * 29 + 2 * 150);
   EXPECT_EQ(free.solver.residuals, 2 * 150 * 30);
@@ -191,7 +191,7 @@ TEST(PlaneAdjustment, HoldsNormalExactly) {
   const Simulation truth = simulate({.motion = Motion::wander});
   const Initialization start = perturbed_truth(truth);
   const Initialization result =
-      successful(refine_on_plane(truth.window, start, PlaneNormal::held, {}));
+      successful(refine_on_plane<PlaneNormal::held>(truth.window, start, {}));
   EXPECT_EQ(result.plane.normal, start.plane.normal);
 }
 

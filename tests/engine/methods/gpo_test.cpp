@@ -4,6 +4,7 @@
 #include "engine/methods/certainty/shared_information.h"
 #include "engine/methods/certainty/uncertainty.h"
 #include "engine/methods/initializers.h"
+#include "engine/methods/methods.h"
 #include "tests/engine/methods/method_cases.h"
 
 #include <functional>
@@ -133,8 +134,8 @@ TEST_P(JointPattern, ReachesBoundOfUnknownBiasAndBeatsOtherMethods) {
     return {{"bound", bound_deg(truth)},
             {"joint", joint_error_deg(truth)},
             {"gpo", error_deg(initialize_gpo(window, {}, {}), truth)},
-            {"ba", error_deg(initialize_ba(window, {}), truth)},
-            {"pba", error_deg(initialize_pba(window, {}), truth)}};
+            {"ba", error_deg(find_method("ba").initialize(window, {}, {}), truth)},
+            {"pba", error_deg(find_method("pba").initialize(window, {}, {}), truth)}};
   };
   Values m = medians(values_of, 15);
   EXPECT_LT(m["joint"], 1.2 * m["bound"]) << "Huber's loss costs 3 % without outliers";
