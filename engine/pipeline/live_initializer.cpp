@@ -105,9 +105,8 @@ struct LiveInitializer::Impl {
   void restart(const std::string& why);
   void append(const Coverage& covered, const Travel::Step& step);
   bool is_candidate(int length, const LiveProgress& so_far) const;
-  /// Returns the length to solve next, the longest or the shortest one; 0: none.
+  /// Returns the length to solve next, the longest one; 0: none.
   int longest_next() const;
-  int shortest_next() const;
   Task task_of(int length) const;
   BackgroundJob::Job next();
 
@@ -230,12 +229,6 @@ int LiveInitializer::Impl::longest_next() const {
   return 0;
 }
 
-int LiveInitializer::Impl::shortest_next() const {
-  for (int length = taken + 1; length <= std::ssize(window); ++length)
-    if (is_candidate(length, progress)) return length;
-  return 0;
-}
-
 LiveInitializer::Impl::Task LiveInitializer::Impl::task_of(int length) const {
   const Entry& last = window[length - 1];
   Task task{
@@ -250,7 +243,8 @@ LiveInitializer::Impl::Task LiveInitializer::Impl::task_of(int length) const {
 BackgroundJob::Job LiveInitializer::Impl::next() {
   const int length = longest_next();
   if (length == 0) return nullptr;
-  skipped |= shortest_next() != length;
+  for (int shorter = taken + 1; shorter < length; ++shorter)
+    skipped |= is_candidate(shorter, progress);
   taken = length;
   return [this, task = task_of(length)](const std::stop_token& stop) { solve(task, stop); };
 }
