@@ -3,7 +3,6 @@
 #include "app/commands/commands.h"
 
 #include <algorithm>
-#include <array>
 #include <iterator>
 #include <regex>
 #include <sstream>
@@ -15,10 +14,7 @@ namespace gpo {
 enum class Page { man, bash, zsh };
 
 template <>
-struct ChoiceKeys<Page> {
-  static constexpr const char* name = "page";
-  static constexpr std::array keys{"man", "bash", "zsh"};
-};
+struct ChoiceKeys<Page> : NamedKeys<"page", "man", "bash", "zsh"> {};
 
 namespace {
 

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <span>
@@ -9,10 +10,23 @@
 
 namespace gpo {
 
-/// Specialize it for enumerations that users choose from: `name` and, in the order of the values,
-/// `keys` on the command line, in scripts and in files.
+/// Specialize it for enumerations that users choose from, with `NamedKeys` as the base: their name
+/// and, in the order of the values, the keys on the command line, in scripts and in files.
 template <class E>
 struct ChoiceKeys;
+
+/// A string literal as a template argument.
+template <std::size_t size>
+struct Literal {
+  char text[size];
+  constexpr Literal(const char (&literal)[size]) { std::ranges::copy(literal, text); }
+};
+
+template <Literal kName, Literal... kKeys>
+struct NamedKeys {
+  static constexpr const char* name = kName.text;
+  static constexpr std::array<const char*, sizeof...(kKeys)> keys{kKeys.text...};
+};
 
 template <class E>
 concept Choice = requires {

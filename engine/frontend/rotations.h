@@ -50,19 +50,17 @@ enum class RotationSource {
 };
 
 template <>
-struct ChoiceKeys<RotationSource> {
-  static constexpr const char* name = "rotations";
-  static constexpr std::array keys{"automatic",
-                                   "raw",
-                                   "gyro",
-                                   "gyro-calibrated",
-                                   "averaging",
-                                   "averaging-first",
-                                   "averaging-second",
-                                   "five-point",
-                                   "direct",
-                                   "truth"};
-};
+struct ChoiceKeys<RotationSource> : NamedKeys<"rotations",
+                                              "automatic",
+                                              "raw",
+                                              "gyro",
+                                              "gyro-calibrated",
+                                              "averaging",
+                                              "averaging-first",
+                                              "averaging-second",
+                                              "five-point",
+                                              "direct",
+                                              "truth"> {};
 
 /// Returns whether the source integrates a gyroscope.
 bool needs_gyroscope(RotationSource source);

@@ -5,7 +5,6 @@
 #include "engine/base/choice.h"
 #include "engine/geometry/lens_models.h"
 
-#include <array>
 #include <optional>
 #include <string>
 #include <vector>
@@ -19,10 +18,8 @@ namespace gpo {
 enum class ReadoutDirection { down, left, up, right };
 
 template <>
-struct ChoiceKeys<ReadoutDirection> {
-  static constexpr const char* name = "readout direction";
-  static constexpr std::array keys{"down", "left", "up", "right"};
-};
+struct ChoiceKeys<ReadoutDirection>
+    : NamedKeys<"readout direction", "down", "left", "up", "right"> {};
 
 /// Time from the first row of an image to the last one in the direction of the readout, negative if
 /// the last row is read first.

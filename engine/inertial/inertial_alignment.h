@@ -8,7 +8,6 @@
 #include "engine/window/gyroscope.h"
 #include "engine/window/window.h"
 
-#include <array>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -23,10 +22,7 @@ namespace gpo {
 enum class Gravity { after, joint, off };
 
 template <>
-struct ChoiceKeys<Gravity> {
-  static constexpr const char* name = "gravity";
-  static constexpr std::array keys{"after", "joint", "off"};
-};
+struct ChoiceKeys<Gravity> : NamedKeys<"gravity", "after", "joint", "off"> {};
 
 /// Covers an uncalibrated sensor: the bias of the one of EuRoC is 0.5 m/s^2 long.
 inline constexpr double kAccelerometerBiasSigma_m_s2 = 0.3;

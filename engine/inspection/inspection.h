@@ -159,10 +159,7 @@ std::optional<Eigen::Vector3d> point_on_plane(const Inspection& inspection,
 enum class ScaleSource { points, result, accelerometer };
 
 template <>
-struct ChoiceKeys<ScaleSource> {
-  static constexpr const char* name = "scale source";
-  static constexpr std::array keys{"points", "result", "accelerometer"};
-};
+struct ChoiceKeys<ScaleSource> : NamedKeys<"scale source", "points", "result", "accelerometer"> {};
 
 /// Returns the source of the scale: two points if they are given, else the unit of an imported
 /// metric result, else the accelerometer, even if it does not determine the scale.

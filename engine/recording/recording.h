@@ -19,10 +19,7 @@ namespace gpo {
 enum class CameraSource { file, self_calibrated, guess };
 
 template <>
-struct ChoiceKeys<CameraSource> {
-  static constexpr const char* name = "camera source";
-  static constexpr std::array keys{"file", "self-calibrated", "guess"};
-};
+struct ChoiceKeys<CameraSource> : NamedKeys<"camera source", "file", "self-calibrated", "guess"> {};
 
 /// ArUco markers in the white squares of a board.
 struct BoardMarkers {

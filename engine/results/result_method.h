@@ -13,19 +13,13 @@ namespace gpo {
 enum class PosedFrame { camera, body };
 
 template <>
-struct ChoiceKeys<PosedFrame> {
-  static constexpr const char* name = "frame";
-  static constexpr std::array keys{"camera", "body"};
-};
+struct ChoiceKeys<PosedFrame> : NamedKeys<"frame", "camera", "body"> {};
 
 /// The unit of a result: meters or arbitrary.
 enum class ResultScale { metric, free };
 
 template <>
-struct ChoiceKeys<ResultScale> {
-  static constexpr const char* name = "scale";
-  static constexpr std::array keys{"metric", "free"};
-};
+struct ChoiceKeys<ResultScale> : NamedKeys<"scale", "metric", "free"> {};
 
 /// The addition to the times of a result.
 enum class TimeShift { none, estimated, given };

@@ -18,10 +18,7 @@ namespace gpo {
 enum class Inliers { per_frame, consistent, planes };
 
 template <>
-struct ChoiceKeys<Inliers> {
-  static constexpr const char* name = "inliers";
-  static constexpr std::array keys{"per-frame", "consistent", "planes"};
-};
+struct ChoiceKeys<Inliers> : NamedKeys<"inliers", "per-frame", "consistent", "planes"> {};
 
 /// Errors that a homography and the best pure rotation leave at the inliers of one frame.
 struct FrameErrors {
@@ -37,10 +34,7 @@ struct FrameErrors {
 enum class RotationModel { known, bias, free };
 
 template <>
-struct ChoiceKeys<RotationModel> {
-  static constexpr const char* name = "rotation model";
-  static constexpr std::array keys{"known", "bias", "free"};
-};
+struct ChoiceKeys<RotationModel> : NamedKeys<"rotation model", "known", "bias", "free"> {};
 
 /// Derivatives of integrated gyroscope rotations:
 /// R_wc(bias + db, offset + dt) ~ R_wc exp(d_bias db + d_offset dt + d2_offset dt^2 / 2).

@@ -4,7 +4,6 @@
 
 #include "engine/base/choice.h"
 
-#include <array>
 #include <span>
 #include <string>
 #include <vector>
@@ -57,10 +56,7 @@ PaneNeeds needs_of(const Panes& panes);
 enum class WindowPart { none, image, side, drawer };
 
 template <>
-struct ChoiceKeys<WindowPart> {
-  static constexpr const char* name = "part";
-  static constexpr std::array keys{"none", "picture", "side", "drawer"};
-};
+struct ChoiceKeys<WindowPart> : NamedKeys<"part", "none", "picture", "side", "drawer"> {};
 
 /// How the user has divided the window; 0: the default. Lengths are at scale 1 [px].
 struct Division {

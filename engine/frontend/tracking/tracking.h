@@ -19,9 +19,6 @@ struct FrameSpan {
 };
 
 template <>
-struct ChoiceKeys<Tracking> {
-  static constexpr const char* name = "tracking";
-  static constexpr std::array keys{"frame-to-frame", "anchored"};
-};
+struct ChoiceKeys<Tracking> : NamedKeys<"tracking", "frame-to-frame", "anchored"> {};
 
 }  // namespace gpo

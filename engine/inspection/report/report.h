@@ -109,10 +109,7 @@ struct CameraPath {
 enum class TrajectoryFormat { tum, euroc, kitti };
 
 template <>
-struct ChoiceKeys<TrajectoryFormat> {
-  static constexpr const char* name = "trajectory format";
-  static constexpr std::array keys{"tum", "euroc", "kitti"};
-};
+struct ChoiceKeys<TrajectoryFormat> : NamedKeys<"trajectory format", "tum", "euroc", "kitti"> {};
 
 struct Extrapolation;
 /// Returns the value of `extrapolated` in the JSON of a result.

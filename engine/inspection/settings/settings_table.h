@@ -29,20 +29,14 @@ struct PointPair {
 enum class WorldUp { plane, gravity };
 
 template <>
-struct ChoiceKeys<WorldUp> {
-  static constexpr const char* name = "world up";
-  static constexpr std::array keys{"plane", "gravity"};
-};
+struct ChoiceKeys<WorldUp> : NamedKeys<"world up", "plane", "gravity"> {};
 
 /// leave_out: tracks inside are left out. plane: the first plane of the window is found among the
 /// tracks inside, all others among those outside.
 enum class MaskKind { leave_out, plane };
 
 template <>
-struct ChoiceKeys<MaskKind> {
-  static constexpr const char* name = "mask";
-  static constexpr std::array keys{"not", "plane"};
-};
+struct ChoiceKeys<MaskKind> : NamedKeys<"mask", "not", "plane"> {};
 
 /// An area of the reference frame, in pixels of the recorded, distorted image. A track belongs to
 /// it by its place in that frame.
@@ -97,10 +91,7 @@ struct Settings {
 enum class Preset { best, paper };
 
 template <>
-struct ChoiceKeys<Preset> {
-  static constexpr const char* name = "preset";
-  static constexpr std::array keys{"best", "paper"};
-};
+struct ChoiceKeys<Preset> : NamedKeys<"preset", "best", "paper"> {};
 
 /// Returns the settings with a preset applied. It does not change window, seed, excluded tracks,
 /// leading plane, threshold and measured points.

@@ -22,10 +22,7 @@ namespace gpo {
 enum class Lens { typical, exact };
 
 template <>
-struct ChoiceKeys<Lens> {
-  static constexpr const char* name = "lens";
-  static constexpr std::array keys{"typical", "exact"};
-};
+struct ChoiceKeys<Lens> : NamedKeys<"lens", "typical", "exact"> {};
 
 /// Uncertainty of a plane other than the main plane.
 struct PlaneUncertainty {
@@ -106,19 +103,14 @@ double normal_sigma_deg(const Uncertainty& uncertainty, Lens lens);
 enum class Readiness { ready, weak, degenerate, no_plane };
 
 template <>
-struct ChoiceKeys<Readiness> {
-  static constexpr const char* name = "readiness";
-  static constexpr std::array keys{"ready", "weak", "degenerate", "no plane"};
-};
+struct ChoiceKeys<Readiness> : NamedKeys<"readiness", "ready", "weak", "degenerate", "no plane"> {};
 
 /// Surfaces that the tracks of a window are on.
 enum class SceneKind { unknown, one_plane, several_planes, no_plane };
 
 template <>
-struct ChoiceKeys<SceneKind> {
-  static constexpr const char* name = "scene";
-  static constexpr std::array keys{"not told", "one plane", "several planes", "no plane"};
-};
+struct ChoiceKeys<SceneKind>
+    : NamedKeys<"scene", "not told", "one plane", "several planes", "no plane"> {};
 
 /// Torr's GRIC (1998) of two models of all tracks, between the reference frame and the frame with
 /// the farthest camera; the lower one is better.
@@ -143,10 +135,8 @@ struct Verdict {
 enum class Termination { none, convergence, no_convergence, failure };
 
 template <>
-struct ChoiceKeys<Termination> {
-  static constexpr const char* name = "termination";
-  static constexpr std::array keys{"none", "convergence", "no_convergence", "failure"};
-};
+struct ChoiceKeys<Termination>
+    : NamedKeys<"termination", "none", "convergence", "no_convergence", "failure"> {};
 
 struct MapPoint {
   int track;                 ///< column in the window

@@ -21,10 +21,7 @@ namespace gpo {
 enum class Solver { schur, ceres };
 
 template <>
-struct ChoiceKeys<Solver> {
-  static constexpr const char* name = "solver";
-  static constexpr std::array keys{"schur", "ceres"};
-};
+struct ChoiceKeys<Solver> : NamedKeys<"solver", "schur", "ceres"> {};
 
 /// Noise of an observation. transfer: in the later image only (the paper); sampson: in both, by
 /// Sampson's error; latent: in all images, and the track's position in the reference frame is
@@ -32,37 +29,25 @@ struct ChoiceKeys<Solver> {
 enum class ErrorModel { automatic, transfer, sampson, latent };
 
 template <>
-struct ChoiceKeys<ErrorModel> {
-  static constexpr const char* name = "error";
-  static constexpr std::array keys{"automatic", "transfer", "sampson", "latent"};
-};
+struct ChoiceKeys<ErrorModel> : NamedKeys<"error", "automatic", "transfer", "sampson", "latent"> {};
 
 enum class Loss { squared, huber };
 
 template <>
-struct ChoiceKeys<Loss> {
-  static constexpr const char* name = "loss";
-  static constexpr std::array keys{"squared", "huber"};
-};
+struct ChoiceKeys<Loss> : NamedKeys<"loss", "squared", "huber"> {};
 
 /// Rolling shutter with the window's row delay if it has one (`Window::row_delay`), otherwise
 /// estimated; rolling shutter with an estimated row delay in any case; or global shutter.
 enum class Shutter { known, estimated, global };
 
 template <>
-struct ChoiceKeys<Shutter> {
-  static constexpr const char* name = "shutter";
-  static constexpr std::array keys{"known", "estimated", "global"};
-};
+struct ChoiceKeys<Shutter> : NamedKeys<"shutter", "known", "estimated", "global"> {};
 
 /// All planes of the window, or only the main plane.
 enum class Planes { all, one };
 
 template <>
-struct ChoiceKeys<Planes> {
-  static constexpr const char* name = "planes";
-  static constexpr std::array keys{"all", "one"};
-};
+struct ChoiceKeys<Planes> : NamedKeys<"planes", "all", "one"> {};
 
 /// Normal of a bundle adjustment over a plane: estimated or fixed.
 enum class PlaneNormal { free, held };

@@ -171,11 +171,8 @@ MessageType message_type(const std::string& name, MessageEncoding encoding);
 enum class TopicRole { image, camera_info, imu, truth, gyroscope, accelerometer };
 inline constexpr int kTopicRoles = 6;
 template <>
-struct ChoiceKeys<TopicRole> {
-  static constexpr const char* name = "topic";
-  static constexpr std::array<const char*, kTopicRoles> keys = {
-      "image", "camera_info", "imu", "truth", "gyroscope", "accelerometer"};
-};
+struct ChoiceKeys<TopicRole>
+    : NamedKeys<"topic", "image", "camera_info", "imu", "truth", "gyroscope", "accelerometer"> {};
 
 /// Names of the topics that the user chose.
 using TopicChoices = std::map<TopicRole, std::string>;

@@ -11,10 +11,7 @@ namespace gpo {
 
 enum class RecordingFormat { euroc, rosbag, mcap };
 template <>
-struct ChoiceKeys<RecordingFormat> {
-  static constexpr const char* name = "format";
-  static constexpr std::array<const char*, 3> keys = {"euroc", "rosbag", "mcap"};
-};
+struct ChoiceKeys<RecordingFormat> : NamedKeys<"format", "euroc", "rosbag", "mcap"> {};
 
 using WriteProgress = std::function<void(int done, int of)>;
 
