@@ -278,8 +278,7 @@ Initialization initialize_gpo_joint(const Window& window,
   const PlaneMotion motion = facing(fit.window, fit.solution.motion);
   result.uncertainty =
       joint ? std::optional(joint->uncertainty)
-            : uncertainty_of(
-                  {fit.window, fit.observations, motion}, fit.rotations.model, Errors::all_jointly);
+            : uncertainty_of({fit.window, fit.observations, motion}, fit.rotations.model);
   if (joint) add_bends({fit.window, fit.observations, motion}, *result.uncertainty);
   set_plane_uncertainties(result);
   if (window.rotations == RotationModel::bias) result.bias_rad_s = bias_rad_s;

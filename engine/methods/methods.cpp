@@ -149,7 +149,7 @@ std::optional<Uncertainty> uncertainty_by_tracks(RotationModel method,
                                                  const Window& window,
                                                  const Initialization& result) {
   const auto of = [&](RotationModel rotations) {
-    return uncertainty_of(window, result.plane, result.cameras, rotations, Errors::all_jointly);
+    return uncertainty_of(window, result.plane, result.cameras, rotations);
   };
   using enum RotationModel;
   auto u = of(method);

@@ -118,18 +118,6 @@ Eigen::MatrixXd square_of(const Eigen::MatrixXd& moves) {
   return all;
 }
 
-Eigen::Matrix<double, 8, Eigen::Dynamic> curved_jacobian(const FrameObservations& f,
-                                                         const FrameState& state) {
-  Eigen::Matrix<double, 8, Eigen::Dynamic> all(8, 2 * f.count);
-  for (int k = 0; k < f.count; ++k) {
-    const Transfer transfer = transfer_of(f, state, k);
-    const Eigen::Vector2d r = transfer.pixel - Eigen::Vector2d(f.u[k], f.v[k]);
-    all.middleCols<2>(Index{2} * k).noalias() =
-        transfer.jacobian(state.tangents).transpose() * curvature_of(f, k, r);
-  }
-  return all;
-}
-
 int own_size(RotationModel model, const PlaneMotion& motion) {
   const bool noisy = model == RotationModel::bias && !motion.gyro_noise_rad.empty();
   return model == RotationModel::free || noisy ? 6 : 3;
@@ -306,19 +294,6 @@ Spread spread_of(const Sandwich& sandwich, const Influences& all, double degrees
   const auto of_normal = [](const SharedMatrix& x) { return x.topLeftCorner<2, 2>().trace(); };
   if (of_normal(both) > of_normal(spread.shared) && symmetric_eigen(both).values(0) >= 0)
     spread.shared = both;
-  return spread;
-}
-
-Spread spread_by_observation(const Influences& all, double degrees_of_freedom) {
-  Spread spread{degrees_of_freedom * all.shared * all.shared.transpose(),
-                std::vector<SharedMatrix>(1),
-                std::vector<OwnMatrix>(1)};
-  for (std::size_t i = 1; i + 1 < all.first.size(); ++i) {
-    const auto columns = Eigen::seq(all.first[i], all.first[i + 1] - 1);
-    const Eigen::MatrixXd e = all.own(Eigen::all, columns);
-    spread.cross.emplace_back(degrees_of_freedom * all.shared(Eigen::all, columns) * e.transpose());
-    spread.own.emplace_back(degrees_of_freedom * e * e.transpose());
-  }
   return spread;
 }
 

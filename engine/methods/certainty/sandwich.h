@@ -24,10 +24,6 @@ using OwnVector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 6, 1>;
 /// Returns the number of a frame's own unknowns.
 int own_size(RotationModel model, const PlaneMotion& motion);
 
-/// Returns J^T, over (u, phi, t), times the second derivative of the loss, two columns for each
-/// observation of a frame.
-Eigen::Matrix<double, 8, Eigen::Dynamic> curved_jacobian(const FrameObservations& observations,
-                                                         const FrameState& state);
 struct Linearization {
   std::vector<std::vector<FrameNormals>> planes;  ///< main plane first; one per frame
   double sigma_px = 0;                            ///< noise of a coordinate, from the residuals
@@ -121,8 +117,5 @@ struct Spread {
 /// Returns the spread with tracks as clusters and, for the shared unknowns, also frames; errors
 /// that all observations of a frame share go into its own unknowns.
 Spread spread_of(const Sandwich& sandwich, const Influences& all, double degrees_of_freedom);
-
-/// Returns the spread with single observations as clusters: that of independent errors.
-Spread spread_by_observation(const Influences& all, double degrees_of_freedom);
 
 }  // namespace gpo

@@ -102,17 +102,34 @@ ResultMoves moves_by_track(const Sandwich& sandwich,
   return moves;
 }
 
-Eigen::MatrixXd spread_of_results(const PlaneMotion& motion,
-                                  const Eigen::MatrixXd& M,
-                                  const Spread& spread) {
-  Eigen::MatrixXd all = M * spread.shared * M.transpose();
+/// Returns the covariance of the results for independent errors of all observations.
+Eigen::MatrixXd covariance_by_observation(const PlaneMotion& motion,
+                                          const Eigen::MatrixXd& M,
+                                          const Influences& all,
+                                          double degrees_of_freedom) {
+  Eigen::MatrixXd covariance = M * (all.shared * all.shared.transpose()) * M.transpose();
   for (Eigen::Index i = 1; i < std::ssize(motion.tau); ++i) {
-    const Eigen::Matrix3d& R = motion.R_wc[i];
+    const auto columns = Eigen::seq(all.first[i], all.first[i + 1] - 1);
+    const Eigen::MatrixXd e = motion.R_wc[i] * all.own(Eigen::all, columns).bottomRows<3>();
     const Eigen::Index at = 3 * (i - 1);
-    const Eigen::MatrixXd cross = -M * spread.cross[i].rightCols<3>() * R.transpose();
-    all.middleCols<3>(at) += cross;
-    all.middleRows<3>(at) += cross.transpose();
-    all.block<3, 3>(at, at) += R * spread.own[i].bottomRightCorner<3, 3>() * R.transpose();
+    const Eigen::MatrixXd cross = -M * (all.shared(Eigen::all, columns) * e.transpose());
+    covariance.middleCols<3>(at) += cross;
+    covariance.middleRows<3>(at) += cross.transpose();
+    covariance.block<3, 3>(at, at) += e * e.transpose();
+  }
+  return degrees_of_freedom * covariance;
+}
+
+/// Returns J^T, over (u, phi, t), times the second derivative of the loss, two columns for each
+/// observation of a frame.
+Eigen::Matrix<double, 8, Eigen::Dynamic> curved_jacobian(const FrameObservations& f,
+                                                         const FrameState& state) {
+  Eigen::Matrix<double, 8, Eigen::Dynamic> all(8, 2 * f.count);
+  for (int k = 0; k < f.count; ++k) {
+    const Transfer transfer = transfer_of(f, state, k);
+    const Eigen::Vector2d r = transfer.pixel - Eigen::Vector2d(f.u[k], f.v[k]);
+    all.middleCols<2>(Eigen::Index{2} * k).noalias() =
+        transfer.jacobian(state.tangents).transpose() * curvature_of(f, k, r);
   }
   return all;
 }
@@ -251,7 +268,6 @@ Eigen::MatrixXd joint_covariance(const Sandwich& sandwich,
   moves.insert(moves.end(), of_image.begin(), of_image.end());
   const auto [of_others, others] = moves_of_results(motion, M, moves);
   const auto [of_tracks, tracks] = moves_by_track(sandwich, M, influences, degrees_of_freedom);
-  const Spread observations = spread_by_observation(influences, degrees_of_freedom);
   std::vector<int> blocks(bread.frames.size() - 1, 3);
   if (bread.layout.gyro > 0) blocks.push_back(3);
   if (bread.layout.gyro > 3) blocks.push_back(1);
@@ -260,7 +276,8 @@ Eigen::MatrixXd joint_covariance(const Sandwich& sandwich,
   const SharedMatrix rest = shared - tracks * tracks.transpose() - others * others.transpose();
   // A decrease by errors that frames share would exceed what few tracks have in its direction.
   const Eigen::MatrixXd shrunk =
-      shrunk_covariance(of_tracks, square, spread_of_results(motion, M, observations)) +
+      shrunk_covariance(
+          of_tracks, square, covariance_by_observation(motion, M, influences, degrees_of_freedom)) +
       M * power_of_positive(rest, 1) * M.transpose();
   return with_blocks_of(square + M * rest * M.transpose(), blocks, shrunk) + square_of(of_others);
 }

@@ -286,7 +286,7 @@ std::optional<Uncertainty> uncertainty_of(const SolvedPlanes& solved,
   NoiseSpread all = marginals(motion, bread, spread);
   result.center_covariances = std::move(all.centers);
   for (const double v : all.distance_ratios) result.distance_ratio_sigmas.push_back(std::sqrt(v));
-  if (errors == Errors::all_jointly) {
+  if (errors == Errors::all) {
     result.joint_covariance =
         joint_covariance(sandwich, influences, degrees_of_freedom, moves_of_image, spread.shared);
     result.joint_bias_rows = bread.layout.gyro;
@@ -300,15 +300,14 @@ std::optional<Uncertainty> uncertainty_of(const SolvedPlanes& solved,
 std::optional<Uncertainty> uncertainty_of(const Window& window,
                                           const Plane& plane,
                                           std::span<const Pose> cameras,
-                                          RotationModel model,
-                                          Errors errors) {
+                                          RotationModel model) {
   const PlaneMotion motion = motion_of(plane, cameras);
   const PlaneObservations observations = plane_observations(window);
   const auto row_delay = neglected_row_delay({window, observations, motion}, model);
-  if (!row_delay) return uncertainty_of({window, observations, motion}, model, errors);
+  if (!row_delay) return uncertainty_of({window, observations, motion}, model);
   Window late = window;
   late.row_delay_moves_px = row_delay->moves_px;
-  auto result = uncertainty_of({late, observations, motion}, model, errors);
+  auto result = uncertainty_of({late, observations, motion}, model);
   if (result) result->neglected_row_delay_s = row_delay->seconds;
   return result;
 }

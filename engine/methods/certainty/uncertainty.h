@@ -12,23 +12,21 @@
 
 namespace gpo {
 
-/// of_noise: without errors of neighbors and surfaces. all_jointly: also computes
-/// `Uncertainty::joint_covariance`, which takes 1 to 2 ms for 30 frames and grows with the square
-/// of their number.
-enum class Errors { of_noise, all, all_jointly };
+/// of_noise: without errors of neighbors and surfaces, and without `Uncertainty::joint_covariance`,
+/// which takes 1 to 2 ms for 30 frames and grows with the square of their number.
+enum class Errors { of_noise, all };
 
-/// Returns the uncertainty of a solution on the window's inliers, by a method for which the
+/// Returns the uncertainty of a solution over weighted observations, by a method for which the
 /// rotations are unknown to the extent of `rotations`. nullopt if the solution is not determined or
 /// a point is behind a camera.
-std::optional<Uncertainty> uncertainty_of(const Window& window,
-                                          const Plane& plane,
-                                          std::span<const Pose> cameras,
-                                          RotationModel rotations,
-                                          Errors errors = Errors::all);
-
-/// Returns the same for a solution over several planes with weighted observations.
 std::optional<Uncertainty> uncertainty_of(const SolvedPlanes& solved,
                                           RotationModel rotations,
                                           Errors errors = Errors::all);
+
+/// Returns the same for a solution on the window's inliers with equal weights.
+std::optional<Uncertainty> uncertainty_of(const Window& window,
+                                          const Plane& plane,
+                                          std::span<const Pose> cameras,
+                                          RotationModel rotations);
 
 }  // namespace gpo

@@ -311,7 +311,6 @@ TEST(Uncertainty, MatchesBoundForKnownRotations) {
   EXPECT_NEAR(u->normal_sigma_deg / *u->bound_known_rotations_deg, 1, 0.2);
   EXPECT_EQ(u->tracks, truth.window.inlier_count(0));
   EXPECT_FALSE(u->bound_unknown_bias_deg);
-  EXPECT_EQ(u->joint_covariance.size(), 0) << "not requested";
 }
 
 TEST(Uncertainty, GrowsWithUnknowns) {
@@ -343,8 +342,7 @@ TEST(JointCenters, ContainCovariancesOfCentersAndBias) {
                                             .seed = 3});
   for (const RotationModel rotations :
        {RotationModel::known, RotationModel::bias, RotationModel::free}) {
-    const auto u =
-        uncertainty_of(truth.window, truth.plane, truth.cameras, rotations, Errors::all_jointly);
+    const auto u = uncertainty_of(truth.window, truth.plane, truth.cameras, rotations);
     ASSERT_TRUE(u);
     const Eigen::MatrixXd& all = u->joint_covariance;
     EXPECT_EQ(u->joint_bias_rows, rotations == RotationModel::free ? 0 : 4);
