@@ -102,32 +102,23 @@ MatrixXd by_gyro_bias(const AlignmentProblem& problem, const AlignmentState& sta
   return J;
 }
 
-std::vector<std::vector<InertialFrame>> scaled_paths(std::span<const Preintegration> between,
-                                                     const Eigen::Matrix3d& R_sensor_camera,
-                                                     double share) {
-  std::vector<std::vector<InertialFrame>> paths;
+std::vector<VectorXd> changes_by_scales(const AlignmentProblem& problem,
+                                        const AlignmentState& state,
+                                        std::span<const Preintegration> between,
+                                        double gravity_share,
+                                        double force_share) {
+  const VectorXd r = residuals(problem, state);
+  AlignmentState longer = state;
+  longer.gravity *= 1 + gravity_share;
+  std::vector<VectorXd> changes{residuals(problem, longer) - r};
   for (int axis = 0; axis < 3; ++axis) {
     std::vector<Preintegration> scaled(between.begin(), between.end());
     for (Preintegration& one : scaled) {
-      one.velocity(axis) *= 1 + share;
-      one.position(axis) *= 1 + share;
+      one.velocity(axis) *= 1 + force_share;
+      one.position(axis) *= 1 + force_share;
     }
-    paths.push_back(inertial_path(scaled, R_sensor_camera.transpose()));
-  }
-  return paths;
-}
-
-std::vector<Eigen::VectorXd> changes_by_scales(const AlignmentProblem& problem,
-                                               const AlignmentState& state,
-                                               std::span<const std::vector<InertialFrame>> paths,
-                                               double gravity_share) {
-  const Eigen::VectorXd r = residuals(problem, state);
-  AlignmentState longer = state;
-  longer.gravity *= 1 + gravity_share;
-  std::vector<Eigen::VectorXd> changes{residuals(problem, longer) - r};
-  for (const std::vector<InertialFrame>& path : paths) {
     AlignmentProblem other = problem;
-    other.path = path;
+    other.path = inertial_path(scaled, problem.path.front().R);
     changes.push_back(residuals(other, state) - r);
   }
   return changes;

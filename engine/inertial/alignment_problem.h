@@ -48,17 +48,14 @@ Eigen::MatrixXd jacobian(const AlignmentProblem& problem,
 /// on the accelerometer's bias.
 Eigen::MatrixXd by_gyro_bias(const AlignmentProblem& problem, const AlignmentState& state);
 
-/// Returns the path with the force along each of the sensor's axes, which hardly rotates between
-/// two frames, scaled by 1 + `share`.
-std::vector<std::vector<InertialFrame>> scaled_paths(std::span<const Preintegration> between,
-                                                     const Eigen::Matrix3d& R_sensor_camera,
-                                                     double share);
-/// Returns the changes of the residuals by a gravity that is longer by this share, and by each
-/// path.
+/// Returns the changes of the residuals by a gravity that is longer by a share, and by a force that
+/// is along each of the sensor's axes, which hardly rotates between two frames. `between`:
+/// intervals of the problem's path.
 std::vector<Eigen::VectorXd> changes_by_scales(const AlignmentProblem& problem,
                                                const AlignmentState& state,
-                                               std::span<const std::vector<InertialFrame>> paths,
-                                               double gravity_share);
+                                               std::span<const Preintegration> between,
+                                               double gravity_share,
+                                               double force_share);
 
 /// Solves linear equations for scale, gravity and velocity (Qin and Shen 2018), first with free
 /// gravity, then with its known length.

@@ -366,12 +366,9 @@ InertialAlignment align_inertial(const UncertainPoses& poses,
   result.times_ns = poses.times_ns;
   result.velocities_m_s = velocities(problem, refined.state);
   add_certainty(refined, options, result);
-  const auto paths =
-      scaled_paths(measured.between, gyroscope.R_gyro_camera, options.scale_factor_sigma);
-  add_moves(refined,
-            changes_by_scales(problem, refined.state, paths, options.gravity_sigma),
-            options,
-            result);
+  const auto changes = changes_by_scales(
+      problem, refined.state, measured.between, options.gravity_sigma, options.scale_factor_sigma);
+  add_moves(refined, changes, options, result);
   result.milliseconds =
       std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count();
   if (pull != nullptr) *pull = pull_of(problem, refined.state, result.misfit);
