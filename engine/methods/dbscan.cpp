@@ -8,7 +8,6 @@
 #include "engine/methods/plane/plane_result.h"
 
 #include <algorithm>
-#include <cmath>
 #include <functional>
 #include <iterator>
 #include <numeric>
@@ -21,7 +20,6 @@
 namespace gpo {
 namespace {
 
-using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
 /// Neighborhood of a normal: three standard deviations of a decomposition at |tau| = 0.3, 0.5 px of

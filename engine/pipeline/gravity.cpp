@@ -7,7 +7,6 @@
 #include "engine/pipeline/method_defaults.h"
 #include "engine/pipeline/pipeline.h"
 
-#include <algorithm>
 #include <cmath>
 #include <utility>
 

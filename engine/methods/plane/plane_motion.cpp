@@ -42,13 +42,6 @@ PlaneMotion facing(const Window& window, PlaneMotion motion) {
   return motion;
 }
 
-std::vector<Pose> cameras_of(const PlaneMotion& motion) {
-  std::vector<Pose> cameras;
-  for (std::size_t i = 0; i < motion.tau.size(); ++i)
-    cameras.push_back({motion.R_wc[i], Eigen::Vector3d::Zero() - motion.tau[i]});  // no -0
-  return cameras;
-}
-
 Eigen::Vector3d gyro_correction_rad(const Window& window, int frame, const PlaneMotion& motion) {
   const GyroSensitivity& gyro = *window.gyro;
   Eigen::Vector3d by_bias = gyro.d_bias[frame] * (motion.bias_rad_s - gyro.bias_rad_s);

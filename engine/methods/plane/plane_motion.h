@@ -50,7 +50,6 @@ PlaneMotion motion_of(const Plane& plane, std::span<const Pose> cameras);
 
 /// Returns the motion with the sign that puts most inliers in front of the reference camera.
 PlaneMotion facing(const Window& window, PlaneMotion motion);
-std::vector<Pose> cameras_of(const PlaneMotion& motion);
 
 /// Returns the first-order correction phi of a gyroscope rotation, R_wc exp(phi), for the motion's
 /// bias and time offset.

@@ -58,7 +58,8 @@ Initialization make_result(const Window& window,
       if (step.normal) step.normal = -*step.normal;
   }
   result.plane = {visible.normal, 1};
-  result.cameras = cameras_of(visible);
+  for (std::size_t i = 0; i < visible.tau.size(); ++i)
+    result.cameras.push_back({visible.R_wc[i], Eigen::Vector3d::Zero() - visible.tau[i]});  // no -0
   if (!window.planes.empty()) result.planes.push_back({window.leader, result.plane});
   for (const auto& [number, m] : visible.others)
     result.planes.push_back({number, {m.normalized(), 1 / m.norm()}});
