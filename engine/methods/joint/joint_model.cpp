@@ -28,27 +28,6 @@ Monomials monomials(const Vector2d& p) {
   return all;
 }
 
-/// A frame and its velocity, in its camera axes at the time stamp.
-struct MovingFrame {
-  FrameState at_stamp;
-  Vector3d rate, rate_s, tau_s, tau_s2;
-
-  MovingFrame(const FrameState& state, const Velocity& velocity)
-      : at_stamp(state),
-        rate(velocity.rotation_rad_s),
-        rate_s(velocity.rotation_rad_s2),
-        tau_s(state.R_cw * velocity.tau_s),
-        tau_s2(state.R_cw * velocity.tau_s2) {}
-
-  /// Sets `to` to the state when it reads the rows that are `seconds` after the time stamp.
-  void read_after(double seconds, FrameState& to) const {
-    const double half = 0.5 * seconds * seconds;
-    const Matrix3d turn = so3_exp(-seconds * rate - half * rate_s);
-    to.tau_c.noalias() = turn * (at_stamp.tau_c + seconds * tau_s + half * tau_s2);
-    to.R_cw.noalias() = turn * at_stamp.R_cw;
-  }
-};
-
 /// Weights of an observation: of its gradient and, as a root, of its second derivatives.
 struct Weights {
   double gradient = 0;
@@ -201,7 +180,9 @@ void Model::predict_group(const State& state,
                           std::vector<Prediction>& all) const {
   const bool has_lens = !state.lens.isZero(0);
   FrameState at = frame_state(observations_, state.motion, group.frame, group.plane);
-  const MovingFrame moving(at, state.velocities[group.frame]);
+  const FrameState at_stamp = at;
+  const Velocity& velocity = state.velocities[group.frame];
+  const Vector3d tau_s = at.R_cw * velocity.tau_s, tau_s2 = at.R_cw * velocity.tau_s2;
   const Vector2d per_px(1 / at.fx, 1 / at.fy);
   all.resize(group.tracks.size());
   for (std::size_t o = 0; o < all.size(); ++o) {
@@ -209,7 +190,12 @@ void Model::predict_group(const State& state,
     const Vector2d observed = observed_px(group, static_cast<int>(o));
     Prediction& p = all[o];
     p.seconds = state.row_delay_s * window_.row_of(group.frame, tracks_[j].column);
-    if (state.row_delay_s != 0) moving.read_after(p.seconds, at);
+    if (state.row_delay_s != 0) {  // when the frame reads the row
+      const Matrix3d turn = so3_exp(-velocity.rotation_rad(p.seconds));
+      const double half = 0.5 * p.seconds * p.seconds;
+      at.tau_c.noalias() = turn * (at_stamp.tau_c + p.seconds * tau_s + half * tau_s2);
+      at.R_cw.noalias() = turn * at_stamp.R_cw;
+    }
     const Vector2d latent = (tracks_[j].reference_px + state.shift_px.col(j)).cwiseProduct(per_px);
     p.transfer = transfer_on_plane(at, Vector3d(latent.x(), latent.y(), 1));
     const Eigen::Matrix<double, 3, 2> A =
