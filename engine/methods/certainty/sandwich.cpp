@@ -22,6 +22,15 @@ using Eigen::Vector3d;
 
 constexpr int kLeastClusters = 5;  // least number of frames as clusters
 
+/// Root of the mean square of two-dimensional Gaussian noise under Huber weights.
+constexpr double kSigmaOfHuber = 0.8636;
+
+/// Returns true if some observation is beyond the knee of Huber's loss.
+bool has_huber_weights(const FrameObservations& f) {
+  return f.weight.empty() &&
+         std::any_of(f.mask.begin(), f.mask.begin() + f.count, [](double m) { return m != 1; });
+}
+
 /// Returns the part of the spread that frames have in common, without that of single observations;
 /// zero with too few frames.
 SharedMatrix spread_by_frame(const Influences& all, int frames, double degrees_of_freedom) {

@@ -111,11 +111,6 @@ Matrix2d curvature_of(const FrameObservations& f, int k, const Vector2d& r) {
   return f.mask[k] * f.mask[k] * (Matrix2d::Identity() - along * along.transpose());
 }
 
-bool has_huber_weights(const FrameObservations& f) {
-  return f.weight.empty() &&
-         std::any_of(f.mask.begin(), f.mask.begin() + f.count, [](double m) { return m != 1; });
-}
-
 void add_curved(const FrameObservations& f, const FrameState& state, int k, FrameNormals& sum) {
   const Transfer transfer = transfer_of(f, state, k);
   const Eigen::Matrix<double, 2, 8> J = transfer.jacobian(state.tangents);

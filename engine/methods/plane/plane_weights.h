@@ -7,9 +7,6 @@
 
 namespace gpo {
 
-/// Root of the mean square of two-dimensional Gaussian noise under Huber weights.
-inline constexpr double kSigmaOfHuber = 0.8636;
-
 /// Returns the transfer of observation `k`.
 Transfer transfer_of(const FrameObservations& f, const FrameState& state, int k);
 Eigen::Vector2d transfer_error_px(const FrameObservations& f, const FrameState& state, int k);
@@ -45,8 +42,6 @@ Eigen::Matrix2d weight_of(const FrameObservations& f, int k);
 /// Huber's loss, k |r| has no curvature along the error and k / |r| across it, while the weights of
 /// the least squares, k / |r| in both directions, would be overconfident.
 Eigen::Matrix2d curvature_of(const FrameObservations& f, int k, const Eigen::Vector2d& r);
-/// Returns true if some observation is beyond the knee of Huber's loss.
-bool has_huber_weights(const FrameObservations& f);
 /// Adds an observation's normal equations; JtJ is the second derivative of its loss.
 void add_curved(const FrameObservations& f, const FrameState& state, int k, FrameNormals& sum);
 /// Returns the sum of these over all observations of a frame.
