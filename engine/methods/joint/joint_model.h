@@ -31,7 +31,6 @@ struct Options {
   int velocity = 0;
 };
 
-inline constexpr double kHuberSigmas = 1.345;
 inline constexpr double kGateSigmas = 5;           ///< observations beyond have no weight
 inline constexpr int kMonomials = 7;               ///< degrees 2 and 3 in the pixel
 inline constexpr int kLensTerms = 2 * kMonomials;  ///< for both coordinates

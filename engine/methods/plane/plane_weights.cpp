@@ -16,8 +16,6 @@ using Eigen::Matrix3d;
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-constexpr double kHuberSigmas = 1.345;
-
 /// Returns dp_i/dp_1, the slope of the homography at the point.
 Matrix2d slope(const FrameState& state, const Transfer& transfer) {
   const Matrix3d A = state.R_cw - state.tau_c * state.normal.transpose();

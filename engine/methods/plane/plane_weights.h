@@ -7,6 +7,9 @@
 
 namespace gpo {
 
+/// Knee of the Huber loss [standard deviations of a coordinate].
+inline constexpr double kHuberSigmas = 1.345;
+
 /// Returns the transfer of observation `k`.
 Transfer transfer_of(const FrameObservations& f, const FrameState& state, int k);
 Eigen::Vector2d transfer_error_px(const FrameObservations& f, const FrameState& state, int k);
