@@ -91,13 +91,12 @@ std::optional<int> Window::plane_of(int track) const {
 }
 
 void refine_homographies(Window& window) {
-  constexpr std::size_t kLeastInliers = 8;
+  constexpr int kLeastInliers = 8;
   for (int i = 1; i < window.frame_count(); ++i) {
-    const std::vector<int> inliers = window.inlier_tracks(i);
-    if (inliers.size() < kLeastInliers || !window.H_i1[i].allFinite()) continue;
-    window.H_i1[i] = refine_homography(window.H_i1[i],
-                                       window.points_px[0](Eigen::all, inliers),
-                                       window.points_px[i](Eigen::all, inliers));
+    const Pairs pairs = inlier_pairs(window, i);
+    Matrix3d& H = window.H_i1[i];
+    if (pairs.from.cols() >= kLeastInliers && H.allFinite())
+      H = refine_homography(H, pairs.from, pairs.to);
   }
 }
 
