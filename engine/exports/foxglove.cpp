@@ -3,7 +3,6 @@
 // MCAP with Foxglove's messages in JSON (https://docs.foxglove.dev/docs/sdk/schemas).
 #include "engine/base/error.h"
 #include "engine/base/stop.h"
-#include "engine/exports/foxglove_schemas.h"
 #include "engine/exports/scene.h"
 #include "engine/files/image_codec.h"
 #include "engine/inspection/studies/studies.h"

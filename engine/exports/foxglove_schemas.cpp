@@ -1,188 +1,101 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/exports/foxglove_schemas.h"
+#include "engine/exports/scene.h"
+#include "engine/files/text_file.h"
 
 #include <map>
-#include <utility>
 
 namespace gpo {
 namespace {
 
 using nlohmann::ordered_json;
 
-const ordered_json kNumber{{"type", "number"}};
-const ordered_json kInteger{{"type", "integer"}};
-const ordered_json kString{{"type", "string"}};
-const ordered_json kBoolean{{"type", "boolean"}};
+/// The fields of Foxglove's types as NAME:TYPE. TYPE[] is a list, TYPE[9] a list of nine, and enum3
+/// one of the numbers 0, 1 and 2.
+const std::map<std::string, std::string> kFoxgloveTypes{
+    {"Point2", "x:number y:number"},
+    {"Vector3", "x:number y:number z:number"},
+    {"Quaternion", "x:number y:number z:number w:number"},
+    {"Color", "r:number g:number b:number a:number"},
+    {"Pose", "position:Vector3 orientation:Quaternion"},
+    {"KeyValuePair", "key:string value:string"},
+    {"CompressedImage", "timestamp:time frame_id:string data:base64 format:string"},
+    {"CameraCalibration",
+     "timestamp:time frame_id:string width:integer height:integer distortion_model:string "
+     "D:number[] K:number[9] R:number[9] P:number[12]"},
+    {"FrameTransform",
+     "timestamp:time parent_frame_id:string child_frame_id:string translation:Vector3 "
+     "rotation:Quaternion"},
+    {"PosesInFrame", "timestamp:time frame_id:string poses:Pose[]"},
+    {"ImageAnnotations",
+     "circles:CircleAnnotation[] points:PointsAnnotation[] texts:TextAnnotation[]"},
+    {"CircleAnnotation",
+     "timestamp:time position:Point2 diameter:number thickness:number fill_color:Color "
+     "outline_color:Color"},
+    {"PointsAnnotation",
+     "timestamp:time type:enum5 points:Point2[] outline_color:Color outline_colors:Color[] "
+     "fill_color:Color thickness:number"},
+    {"TextAnnotation",
+     "timestamp:time position:Point2 text:string font_size:number text_color:Color "
+     "background_color:Color"},
+    {"SceneUpdate", "deletions:SceneEntityDeletion[] entities:SceneEntity[]"},
+    {"SceneEntityDeletion", "timestamp:time type:enum2 id:string"},
+    {"SceneEntity",
+     "timestamp:time frame_id:string id:string lifetime:duration frame_locked:boolean "
+     "metadata:KeyValuePair[] arrows:ArrowPrimitive[] cubes:CubePrimitive[] "
+     "spheres:SpherePrimitive[] cylinders:CylinderPrimitive[] lines:LinePrimitive[] "
+     "triangles:TriangleListPrimitive[] texts:TextPrimitive[] models:ModelPrimitive[]"},
+    {"ArrowPrimitive",
+     "pose:Pose shaft_length:number shaft_diameter:number head_length:number head_diameter:number "
+     "color:Color"},
+    {"CubePrimitive", "pose:Pose size:Vector3 color:Color"},
+    {"SpherePrimitive", "pose:Pose size:Vector3 color:Color"},
+    {"CylinderPrimitive",
+     "pose:Pose size:Vector3 color:Color bottom_scale:number top_scale:number"},
+    {"LinePrimitive",
+     "type:enum3 pose:Pose thickness:number scale_invariant:boolean points:Vector3[] color:Color "
+     "colors:Color[] indices:integer[]"},
+    {"TriangleListPrimitive",
+     "pose:Pose points:Vector3[] color:Color colors:Color[] indices:integer[]"},
+    {"TextPrimitive",
+     "pose:Pose billboard:boolean font_size:number scale_invariant:boolean color:Color "
+     "text:string"},
+    {"ModelPrimitive",
+     "pose:Pose scale:Vector3 color:Color override_color:boolean url:string media_type:string "
+     "data:base64"}};
 
-ordered_json object_of(ordered_json properties) {
-  return {{"type", "object"}, {"properties", std::move(properties)}};
-}
-
-ordered_json array_of(ordered_json items) {
-  return {{"type", "array"}, {"items", std::move(items)}};
-}
-
-ordered_json numbers(int count) {
-  return {{"type", "array"}, {"items", kNumber}, {"minItems", count}, {"maxItems", count}};
-}
-
-ordered_json numbers_named(const std::string& letters) {
-  ordered_json properties;
-  for (const char letter : letters) properties[std::string(1, letter)] = kNumber;
-  return object_of(std::move(properties));
-}
-
-ordered_json time_schema(const char* title = "time") {
-  ordered_json schema =
-      object_of({{"sec", {{"type", "integer"}, {"minimum", 0}}},
-                 {"nsec", {{"type", "integer"}, {"minimum", 0}, {"maximum", 999999999}}}});
-  schema["title"] = title;
+ordered_json schema_of(const std::string& type) {
+  if (type == "base64") return {{"type", "string"}, {"contentEncoding", "base64"}};
+  if (type == "time" || type == "duration")
+    return {{"type", "object"},
+            {"properties",
+             {{"sec", {{"type", "integer"}, {"minimum", 0}}},
+              {"nsec", {{"type", "integer"}, {"minimum", 0}, {"maximum", 999999999}}}}},
+            {"title", type}};
+  ordered_json schema;
+  if (type.starts_with("enum")) {
+    for (int value = 0; value < type.back() - '0'; ++value)
+      schema["oneOf"].push_back({{"const", value}});
+  } else if (const std::size_t bracket = type.find('['); bracket != std::string::npos) {
+    schema = {{"type", "array"}, {"items", schema_of(type.substr(0, bracket))}};
+    const auto count = parse_integer(type.substr(bracket + 1, type.size() - bracket - 2));
+    if (count) schema.update({{"minItems", *count}, {"maxItems", *count}});
+  } else if (const auto fields = kFoxgloveTypes.find(type); fields != kFoxgloveTypes.end()) {
+    schema["type"] = "object";
+    for (const std::string& field : split(fields->second, ' ')) {
+      const std::size_t colon = field.find(':');
+      schema["properties"][field.substr(0, colon)] = schema_of(field.substr(colon + 1));
+    }
+  } else {
+    schema["type"] = type;
+  }
   return schema;
-}
-
-ordered_json pose_schema() {
-  return object_of({{"position", numbers_named("xyz")}, {"orientation", numbers_named("xyzw")}});
-}
-
-ordered_json enumeration(int count) {
-  ordered_json values = ordered_json::array();
-  for (int value = 0; value < count; ++value) values.push_back({{"const", value}});
-  return {{"oneOf", values}};
-}
-
-ordered_json compressed_image() {
-  return object_of({{"timestamp", time_schema()},
-                    {"frame_id", kString},
-                    {"data", {{"type", "string"}, {"contentEncoding", "base64"}}},
-                    {"format", kString}});
-}
-
-ordered_json camera_calibration() {
-  return object_of({{"timestamp", time_schema()},
-                    {"frame_id", kString},
-                    {"width", kInteger},
-                    {"height", kInteger},
-                    {"distortion_model", kString},
-                    {"D", array_of(kNumber)},
-                    {"K", numbers(9)},
-                    {"R", numbers(9)},
-                    {"P", numbers(12)}});
-}
-
-ordered_json frame_transform() {
-  return object_of({{"timestamp", time_schema()},
-                    {"parent_frame_id", kString},
-                    {"child_frame_id", kString},
-                    {"translation", numbers_named("xyz")},
-                    {"rotation", numbers_named("xyzw")}});
-}
-
-ordered_json poses_in_frame() {
-  return object_of(
-      {{"timestamp", time_schema()}, {"frame_id", kString}, {"poses", array_of(pose_schema())}});
-}
-
-ordered_json image_annotations() {
-  const ordered_json color = numbers_named("rgba"), at = numbers_named("xy");
-  const ordered_json circle = object_of({{"timestamp", time_schema()},
-                                         {"position", at},
-                                         {"diameter", kNumber},
-                                         {"thickness", kNumber},
-                                         {"fill_color", color},
-                                         {"outline_color", color}});
-  const ordered_json points = object_of({{"timestamp", time_schema()},
-                                         {"type", enumeration(5)},
-                                         {"points", array_of(at)},
-                                         {"outline_color", color},
-                                         {"outline_colors", array_of(color)},
-                                         {"fill_color", color},
-                                         {"thickness", kNumber}});
-  const ordered_json text = object_of({{"timestamp", time_schema()},
-                                       {"position", at},
-                                       {"text", kString},
-                                       {"font_size", kNumber},
-                                       {"text_color", color},
-                                       {"background_color", color}});
-  return object_of(
-      {{"circles", array_of(circle)}, {"points", array_of(points)}, {"texts", array_of(text)}});
-}
-
-/// The primitives of a scene entity.
-ordered_json primitives() {
-  const ordered_json pose = pose_schema(), point = numbers_named("xyz");
-  const ordered_json color = numbers_named("rgba"), colors = array_of(color);
-  const ordered_json points = array_of(point), indices = array_of(kInteger);
-  const ordered_json solid = object_of({{"pose", pose}, {"size", point}, {"color", color}});
-  ordered_json cylinder = solid;
-  cylinder["properties"]["bottom_scale"] = kNumber;
-  cylinder["properties"]["top_scale"] = kNumber;
-  return {{"arrows",
-           array_of(object_of({{"pose", pose},
-                               {"shaft_length", kNumber},
-                               {"shaft_diameter", kNumber},
-                               {"head_length", kNumber},
-                               {"head_diameter", kNumber},
-                               {"color", color}}))},
-          {"cubes", array_of(solid)},
-          {"spheres", array_of(solid)},
-          {"cylinders", array_of(cylinder)},
-          {"lines",
-           array_of(object_of({{"type", enumeration(3)},
-                               {"pose", pose},
-                               {"thickness", kNumber},
-                               {"scale_invariant", kBoolean},
-                               {"points", points},
-                               {"color", color},
-                               {"colors", colors},
-                               {"indices", indices}}))},
-          {"triangles",
-           array_of(object_of({{"pose", pose},
-                               {"points", points},
-                               {"color", color},
-                               {"colors", colors},
-                               {"indices", indices}}))},
-          {"texts",
-           array_of(object_of({{"pose", pose},
-                               {"billboard", kBoolean},
-                               {"font_size", kNumber},
-                               {"scale_invariant", kBoolean},
-                               {"color", color},
-                               {"text", kString}}))},
-          {"models",
-           array_of(object_of({{"pose", pose},
-                               {"scale", point},
-                               {"color", color},
-                               {"override_color", kBoolean},
-                               {"url", kString},
-                               {"media_type", kString},
-                               {"data", {{"type", "string"}, {"contentEncoding", "base64"}}}}))}};
-}
-
-ordered_json scene_update() {
-  const ordered_json deletion =
-      object_of({{"timestamp", time_schema()}, {"type", enumeration(2)}, {"id", kString}});
-  ordered_json entity =
-      object_of({{"timestamp", time_schema()},
-                 {"frame_id", kString},
-                 {"id", kString},
-                 {"lifetime", time_schema("duration")},
-                 {"frame_locked", kBoolean},
-                 {"metadata", array_of(object_of({{"key", kString}, {"value", kString}}))}});
-  entity["properties"].update(primitives());
-  return object_of({{"deletions", array_of(deletion)}, {"entities", array_of(entity)}});
 }
 
 }  // namespace
 
 ordered_json foxglove_schema(const std::string& type) {
-  const std::map<std::string, ordered_json (*)()> kMakers{{"CompressedImage", compressed_image},
-                                                          {"CameraCalibration", camera_calibration},
-                                                          {"FrameTransform", frame_transform},
-                                                          {"PosesInFrame", poses_in_frame},
-                                                          {"ImageAnnotations", image_annotations},
-                                                          {"SceneUpdate", scene_update}};
-  ordered_json schema = kMakers.at(type)();
+  ordered_json schema = schema_of(type);
   schema["title"] = "foxglove." + type;
   return schema;
 }

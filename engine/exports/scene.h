@@ -89,4 +89,8 @@ std::string gltf_bytes(const ExportScene& scene, ExportNotes& notes);
 std::string ply_text(const ExportScene& scene, ExportNotes& notes);
 void write_foxglove(const ExportScene& scene, const fs::path& file, ExportNotes& notes);
 
+/// Returns the JSON schema of one of Foxglove's types with all its fields, as in
+/// https://docs.foxglove.dev/docs/sdk/schemas.
+nlohmann::ordered_json foxglove_schema(const std::string& type);
+
 }  // namespace gpo

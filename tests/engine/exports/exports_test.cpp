@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/exports/exports.h"
 
-#include "engine/exports/foxglove_schemas.h"
 #include "engine/exports/scene.h"
 #include "engine/files/image_codec.h"
 #include "engine/files/text_file.h"
