@@ -8,7 +8,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <map>
 
 #include <Eigen/Geometry>
@@ -214,17 +213,6 @@ ColmapFiles text_files(const ColmapModelFiles& model, const ExportScene& scene) 
     files.points += '\n';
   }
   return files;
-}
-
-/// Appends little-endian numbers.
-template <class... Numbers>
-void put_numbers(std::string& bytes, Numbers... numbers) {
-  const auto append = [&bytes](const auto& number) {
-    std::array<char, sizeof(number)> stored;
-    std::memcpy(stored.data(), &number, sizeof(number));
-    bytes.append(stored.data(), stored.size());
-  };
-  (append(numbers), ...);
 }
 
 ColmapFiles binary_files(const ColmapModelFiles& model, const ExportScene& scene) {

@@ -1,9 +1,8 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-// The scene as glTF 2.0. A root node turns and scales the world of the export to glTF's: y up,
-// meters.
+// The scene as glTF 2.0 (https://registry.khronos.org/glTF/specs/2.0/glTF-2.0.html). A root node
+// turns and scales the world of the export to glTF's: y up, meters.
 #include "engine/base/error.h"
-#include "engine/exports/glb.h"
 #include "engine/exports/scene.h"
 #include "engine/files/image_codec.h"
 #include "engine/inspection/studies/studies.h"
@@ -22,6 +21,94 @@ using Eigen::Matrix3d, Eigen::Vector3d, Eigen::Vector4d;
 using nlohmann::ordered_json;
 
 enum Mode { points = 0, lines = 1, line_strip = 3, triangles = 4 };
+enum Component { unsigned_byte = 5121, unsigned_short = 5123, floating = 5126 };
+
+/// Chunks and buffer views begin at multiples of four bytes.
+std::string aligned_to_four(std::string bytes, char filler) {
+  bytes.resize((bytes.size() + 3) / 4 * 4, filler);
+  return bytes;
+}
+
+/// A file in the making: JSON and one binary buffer. Indices are those of its lists.
+class Glb {
+ public:
+  ordered_json json;
+
+  /// Appends an element to a list of the file. Returns its index.
+  int add(const char* list, ordered_json element) {
+    json[list].push_back(std::move(element));
+    return static_cast<int>(json[list].size()) - 1;
+  }
+
+  /// Appends vectors of one size. `bounds`: adds smallest and largest values, which positions and
+  /// times need.
+  template <int size>
+  int add_vectors(const std::vector<Eigen::Vector<double, size>>& vectors, bool bounds) {
+    std::vector<float> stored;
+    for (const auto& vector : vectors) stored.insert(stored.end(), vector.begin(), vector.end());
+    constexpr std::array kTypes{"SCALAR", "VEC2", "VEC3", "VEC4"};
+    ordered_json accessor{{"componentType", Component::floating}, {"type", kTypes[size - 1]}};
+    for (std::size_t k = 0; bounds && k < size; ++k) {
+      float least = stored[k], most = stored[k];
+      for (std::size_t i = k; i < stored.size(); i += size) {
+        least = std::min(least, stored[i]);
+        most = std::max(most, stored[i]);
+      }
+      accessor["min"].push_back(least);
+      accessor["max"].push_back(most);
+    }
+    return add_values(stored, size, std::move(accessor));
+  }
+  int add_colors(const std::vector<std::uint8_t>& rgba) {  ///< four values per color
+    return add_values(
+        rgba,
+        4,
+        {{"componentType", Component::unsigned_byte}, {"type", "VEC4"}, {"normalized", true}});
+  }
+  int add_indices(const std::vector<std::uint16_t>& indices) {
+    return add_values(
+        indices, 1, {{"componentType", Component::unsigned_short}, {"type", "SCALAR"}});
+  }
+  int add_png(std::string_view png) {  ///< returns the index of a texture
+    const int image = add("images", {{"bufferView", add_view(png)}, {"mimeType", "image/png"}});
+    return add("textures", {{"source", image}});
+  }
+
+  std::string bytes() const {
+    constexpr std::uint32_t kVersion = 2, kHeaderBytes = 12, kChunkHeadBytes = 8;
+    const std::string binary = aligned_to_four(buffer_, '\0');
+    ordered_json whole = json;
+    whole["buffers"] = ordered_json::array({{{"byteLength", binary.size()}}});
+    const std::string text = aligned_to_four(whole.dump(), ' ');
+    const std::size_t length = kHeaderBytes + 2 * kChunkHeadBytes + text.size() + binary.size();
+    std::string bytes = "glTF";
+    put_numbers(bytes,
+                kVersion,
+                static_cast<std::uint32_t>(length),
+                static_cast<std::uint32_t>(text.size()));
+    bytes += "JSON" + text;
+    put_numbers(bytes, static_cast<std::uint32_t>(binary.size()));
+    return bytes + std::string("BIN\0", 4) + binary;
+  }
+
+ private:
+  int add_view(std::string_view bytes) {
+    buffer_ = aligned_to_four(std::move(buffer_), '\0');
+    const std::size_t begin = buffer_.size();
+    buffer_ += bytes;
+    return add("bufferViews", {{"buffer", 0}, {"byteOffset", begin}, {"byteLength", bytes.size()}});
+  }
+
+  template <class Value>
+  int add_values(const std::vector<Value>& values, std::size_t size, ordered_json accessor) {
+    accessor["bufferView"] =
+        add_view({reinterpret_cast<const char*>(values.data()), values.size() * sizeof(Value)});
+    accessor["count"] = values.size() / size;
+    return add("accessors", std::move(accessor));
+  }
+
+  std::string buffer_;
+};
 
 struct UpAxis {
   Vector3d direction = Vector3d::UnitZ();  ///< in the world of the export
@@ -137,7 +224,7 @@ class SceneFile {
           {"attributes",
            {{"POSITION", file_.add_vectors(corners, true)},
             {"NORMAL", file_.add_vectors(std::vector<Vector3d>(4, plane.normal), false)},
-            {"TEXCOORD_0", file_.add_texture_coordinates(coordinates)}}},
+            {"TEXCOORD_0", file_.add_vectors(coordinates, false)}}},
           {"indices", file_.add_indices({0, 1, 2, 0, 2, 3})},
           {"mode", Mode::triangles},
           {"material", material(plane.title.c_str(), color, texture)}};
@@ -202,13 +289,13 @@ class SceneFile {
                    {"extras", {{"cx_px", lens.cx}, {"cy_px", lens.cy}, {"width_px", width}}}});
     std::vector<Vector3d> centers;
     std::vector<Vector4d> rotations;
-    std::vector<double> seconds;
+    std::vector<Eigen::Vector<double, 1>> seconds;
     SteadyQuaternions steady;
     const auto& times = inspection.window->timestamps_ns;
     for (std::size_t i = 0; i < scene_.cameras.size(); ++i) {
       centers.push_back(scene_.cameras[i].p_wc);
       rotations.emplace_back(steady(gltf_camera_rotation(scene_.cameras[i])).coeffs());
-      seconds.push_back(1e-9 * static_cast<double>(times[i] - times.front()));
+      seconds.emplace_back(1e-9 * static_cast<double>(times[i] - times.front()));
       children_.push_back(file_.add(
           "nodes",
           {{"name", fmt::format("frame {}", inspection.window->start + static_cast<int>(i))},
@@ -222,7 +309,7 @@ class SceneFile {
                                   {"translation", list_of(centers.front())},
                                   {"rotation", list_of(rotations.front())}});
     children_.push_back(moving);
-    const int input = file_.add_times(seconds);
+    const int input = file_.add_vectors(seconds, true);
     const auto sampler = [&](int output) {
       return ordered_json{{"input", input}, {"output", output}, {"interpolation", "LINEAR"}};
     };
@@ -234,7 +321,7 @@ class SceneFile {
         {{"name", "camera"},
          {"samplers",
           ordered_json::array({sampler(file_.add_vectors(centers, false)),
-                               sampler(file_.add_quaternions(rotations))})},
+                               sampler(file_.add_vectors(rotations, false))})},
          {"channels", ordered_json::array({channel(0, "translation"), channel(1, "rotation")})}});
   }
 

@@ -82,6 +82,11 @@ std::string image_name(const Recording& recording, int frame);
 /// Empty without images.
 cv::Mat rectified_image(const ExportScene& scene, const ScenePlane& plane);
 
+/// Appends little-endian numbers.
+void put_numbers(std::string& bytes, auto... numbers) {
+  (bytes.append(reinterpret_cast<const char*>(&numbers), sizeof(numbers)), ...);
+}
+
 // The rows of the table.
 
 void write_colmap(const ExportScene& scene, const fs::path& folder, ExportNotes& notes);
