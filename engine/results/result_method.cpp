@@ -5,14 +5,17 @@
 #include "engine/base/error.h"
 #include "engine/external_methods/own_method.h"
 #include "engine/files/text_file.h"
+#include "engine/results/result_cameras.h"
+#include "engine/results/time_offset.h"
 
 #include <algorithm>
 #include <cmath>
 #include <map>
 #include <memory>
 #include <mutex>
+#include <set>
+#include <tuple>
 
-#include <Eigen/LU>
 #include <fmt/format.h>
 
 namespace gpo {
@@ -60,24 +63,253 @@ std::string identity_of(const ProgramResult& result) {
   return identity + suffixes_of(result);
 }
 
+using Index = std::ptrdiff_t;
+
+std::string offset_text(const TimeOffset& offset) {
+  return fmt::format("{:+.2f} +- {:.2f} ms", 1e3 * offset.seconds, 1e3 * offset.sigma_s);
+}
+
+/// The files of a result for one recording.
+class Reader {
+ public:
+  Reader(const ProgramResult& result, ResultLog log)
+      : result_(result),
+        log_(std::move(log)),
+        poses_(read_result_poses(result.poses)),
+        frame_(result.frame.value_or(poses_.frame)) {
+    if (!result.points.empty())
+      points_ = read_result_points(result.points);
+    else if (is_folder(result.poses) && has_points(result.poses))
+      points_ = read_result_points(result.poses);
+    if (result.shift != TimeShift::none && poses_.by != FoundBy::time)
+      throw InputError(fmt::format(
+          "{}: --result {}: has no times, remove ,offset=", result.poses.string(), result.name));
+  }
+
+  Initialization initialize(const Window& window,
+                            const Sources& sources,
+                            const RecordingFacts& recording,
+                            ImportedResult& imported) {
+    try {
+      add_time_offset(window, recording, imported);
+      Initialization result = initialization(window, sources, imported);
+      if (!result.ok) result.reason = fmt::format("{}: {}", result_.name, result.reason);
+      return result;
+    } catch (const std::exception& error) {
+      return failed(fmt::format("{}: {}", result_.name, message_of(error)));
+    }
+  }
+
+  std::optional<ImportedResult> describe(const RecordingFacts& recording) {
+    if (poses_.by != FoundBy::time || !recording.clock || !camera_is_known(recording))
+      return std::nullopt;
+    const Pose T_posed_camera = pose_of_camera(frame_, recording.T_body_camera);
+    ImportedResult imported;
+    set_time_offset(
+        cached_offset(T_posed_camera, *recording.clock), recording.clock->source, imported);
+    return imported;
+  }
+
+ private:
+  Initialization initialization(const Window& window,
+                                const Sources& sources,
+                                ImportedResult& imported) {
+    const double offset_s = imported.applied_time_offset_s;
+    const ResultCameras found = found_cameras(poses_, frame_, window, sources, offset_s);
+    Answer answer;
+    answer.cameras = found.cameras;
+    propose_frame(answer.cameras, window, sources, offset_s);
+    const ResultCoverage covered = coverage_of(answer.cameras);
+    constexpr int kMinCovered = 3;
+    const int least = std::min(kMinCovered, window.frame_count());
+    if (covered.count < least || 2 * (covered.last - covered.first) < window.frame_count() - 1)
+      return failed(
+          fmt::format("has {} of the window's {} frames, expected at least {} over half of it{}",
+                      covered.count,
+                      window.frame_count(),
+                      least,
+                      span_text(poses_, window)));
+    if (!answer.cameras.front())
+      answer.cameras.front() = resected(window, triangulated(window, answer.cameras), 0);
+    if (!answer.cameras.front())
+      return failed("has no pose of the window's first frame and too few points to resect it");
+    answer.plane = plane_in_view(points_, *answer.cameras.front(), window);
+    report(found, window, answer.plane.has_value());
+    Initialization result = initialization_of(window, answer);
+    if (result.ok && result_.scale.value_or(default_scale()) == ResultScale::metric)
+      imported.meters_per_unit = unit_of(found.cameras, result.cameras);
+    return result;
+  }
+
+  /// Body poses come from programs that use an IMU, which measures meters.
+  ResultScale default_scale() const {
+    return frame_ == PosedFrame::body ? ResultScale::metric : ResultScale::free;
+  }
+
+  /// Returns the unit of the estimate in that of the result, from the largest distance of cameras.
+  static std::optional<double> unit_of(const std::vector<std::optional<Pose>>& given,
+                                       const std::vector<Pose>& estimated) {
+    const auto first = std::ranges::find_if(given, [](const auto& one) { return one.has_value(); });
+    const auto f = first - given.begin();
+    double length = 0, own_length = 0;
+    for (Index i = f + 1; i < std::ssize(given); ++i) {
+      if (!given[i]) continue;
+      const double apart = (given[i]->p_wc - (*first)->p_wc).norm();
+      if (apart <= length) continue;
+      length = apart;
+      own_length = (estimated[i].p_wc - estimated[f].p_wc).norm();
+    }
+    return own_length > 0 ? std::optional(length / own_length) : std::nullopt;
+  }
+
+  void add_time_offset(const Window& window,
+                       const RecordingFacts& recording,
+                       ImportedResult& imported) {
+    if (poses_.by != FoundBy::time || !camera_is_known(recording)) return;
+    const bool whole = recording.clock != nullptr;
+    const ClockReference of_window{"the window's rotations", window.timestamps_ns, window.R_wc};
+    const ClockReference& reference = whole ? *recording.clock : of_window;
+    const Pose T_posed_camera = pose_of_camera(frame_, recording.T_body_camera);
+    const auto offset = whole ? cached_offset(T_posed_camera, reference)
+                              : estimate_time_offset(poses_, T_posed_camera, reference);
+    set_time_offset(offset, reference.source, imported);
+    report_time_offset(offset, reference.source);
+  }
+
+  void set_time_offset(const std::optional<TimeOffset>& offset,
+                       const std::string& source,
+                       ImportedResult& imported) const {
+    imported.clock = source;
+    if (result_.shift == TimeShift::given) imported.applied_time_offset_s = result_.shift_s;
+    if (!offset) return;
+    imported.time_offset_s = offset->seconds;
+    imported.time_offset_sigma_s = offset->sigma_s;
+    if (result_.shift == TimeShift::estimated) imported.applied_time_offset_s = offset->seconds;
+  }
+
+  bool camera_is_known(const RecordingFacts& recording) const {
+    return frame_ == PosedFrame::camera || recording.T_body_camera;
+  }
+
+  /// The estimate depends on the recording only, so all windows have the same.
+  std::optional<TimeOffset> cached_offset(const Pose& T_posed_camera,
+                                          const ClockReference& reference) {
+    const std::lock_guard lock(mutex_);
+    const auto& times = reference.timestamps_ns;
+    OffsetKey key{reference.source, times.size(), times.front(), times.back()};
+    if (!offset_ || offset_->first != key)
+      offset_.emplace(std::move(key), estimate_time_offset(poses_, T_posed_camera, reference));
+    return offset_->second;
+  }
+
+  void report_time_offset(const std::optional<TimeOffset>& offset, const std::string& source) {
+    constexpr double kSignificant = 3, kLeast_s = 1e-3;
+    const bool requested = result_.shift != TimeShift::none;
+    if (!offset) {
+      if (result_.shift == TimeShift::estimated)
+        report(
+            fmt::format("time offset: undetermined by {}, none is applied; state it with "
+                        ",offset=SECONDS",
+                        source));
+      return;
+    }
+    const double left_s =
+        std::abs(offset->seconds - (result_.shift == TimeShift::given ? result_.shift_s : 0));
+    const bool significant = left_s > std::max(kLeast_s, kSignificant * offset->sigma_s);
+    if (!requested && !significant) return;
+    const std::string advice = result_.shift == TimeShift::estimated ? "; it is applied"
+                               : requested
+                                   ? fmt::format("; {:+.1f} ms are applied", 1e3 * result_.shift_s)
+                               : significant ? "; it is not applied, add ,offset=auto to apply it"
+                                             : "";
+    report(fmt::format(
+        "time offset {}, recording minus result, by {}{}", offset_text(*offset), source, advice));
+  }
+
+  /// Reports that the poses fit the window's rotations far better in the other frame, unless the
+  /// user chose it.
+  void propose_frame(const std::vector<std::optional<Pose>>& cameras,
+                     const Window& window,
+                     const Sources& sources,
+                     double offset_s) {
+    constexpr double kFarBetter = 1.0 / 3, kLeast_deg = 0.5;
+    if (result_.frame || !sources.T_body_camera) return;
+    const PosedFrame other = frame_ == PosedFrame::body ? PosedFrame::camera : PosedFrame::body;
+    const double now_deg = rotation_misfit_deg(cameras, window);
+    const double other_deg = rotation_misfit_deg(
+        found_cameras(poses_, other, window, sources, offset_s).cameras, window);
+    if (now_deg > kLeast_deg && other_deg < kFarBetter * now_deg)
+      report(
+          fmt::format("add ,frame={}: as {} poses its rotations are {:.2f} deg from the "
+                      "window's, as {} poses {:.2f} deg",
+                      to_string(other),
+                      to_string(other),
+                      other_deg,
+                      to_string(frame_),
+                      now_deg));
+  }
+
+  void report(const std::string& message) {
+    if (!log_) return;
+    constexpr std::size_t kMaxMessages = 20;
+    const std::lock_guard lock(mutex_);
+    if (messages_.size() < kMaxMessages && messages_.insert(message).second)
+      log_(result_.name, message);
+  }
+
+  void report(const ResultCameras& found, const Window& window, bool plane_of_points) {
+    const ResultCoverage covered = coverage_of(found.cameras);
+    report(fmt::format(
+        "{}, {} poses{}{}{}; {} of the window's {} frames{}{}{}; plane through {}",
+        poses_.layout,
+        to_string(frame_),
+        frame_ == PosedFrame::body ? ", with T_BS" : "",
+        poses_.repeats > 0 ? fmt::format(", {} left out", counted(poses_.repeats, "repeated row"))
+                           : "",
+        poses_.unmeasured > 0
+            ? fmt::format(", {} without a pose left out", counted(poses_.unmeasured, "row"))
+            : "",
+        covered.count,
+        window.frame_count(),
+        found.interpolated > 0 ? fmt::format(" ({} interpolated)", found.interpolated) : "",
+        found.in_gaps > 0 ? fmt::format(" ({} in gaps of up to {:.3g} s between poses)",
+                                        found.in_gaps,
+                                        found.longest_gap_s)
+                          : "",
+        covered.count < window.frame_count() ? ", the others resected" : "",
+        plane_of_points ? "its points" : "points triangulated from its cameras"));
+  }
+
+  using OffsetKey = std::tuple<std::string, std::size_t, std::int64_t, std::int64_t>;
+  const ProgramResult result_;
+  const ResultLog log_;
+  const ResultPoses poses_;
+  const PosedFrame frame_;
+  Eigen::Matrix3Xd points_;
+  std::mutex mutex_;
+  std::set<std::string> messages_;
+  std::optional<std::pair<OffsetKey, std::optional<TimeOffset>>>
+      offset_;  ///< for the last recording
+};
+
 /// The files of a result, which are read at the first window of a recording if each has its own.
 class Readers {
  public:
   /// Throws InputError.
   Readers(ProgramResult result, ResultLog log) : result_(std::move(result)), log_(std::move(log)) {
-    if (!is_pattern(result_)) readers_[""] = read_result(result_, log_);
+    if (!is_pattern(result_)) readers_[""] = std::make_shared<Reader>(result_, log_);
   }
 
   /// Throws InputError if the files are absent or cannot be read.
-  ResultReader find(const std::string& recording) {
+  std::shared_ptr<Reader> find(const std::string& recording) {
     const bool pattern = is_pattern(result_);
     if (pattern && recording.empty())
       throw InputError(fmt::format(
           "--result {}: {{recording}} stands for the name of a recording, but this one has none",
           result_.name));
     const std::lock_guard lock(mutex_);
-    ResultReader& reader = readers_[pattern ? recording : ""];
-    if (!reader.initialize) reader = read_result(in_recording(result_, recording), log_);
+    std::shared_ptr<Reader>& reader = readers_[pattern ? recording : ""];
+    if (!reader) reader = std::make_shared<Reader>(in_recording(result_, recording), log_);
     return reader;
   }
 
@@ -93,7 +325,7 @@ class Readers {
   const ProgramResult result_;
   const ResultLog log_;
   std::mutex mutex_;
-  std::map<std::string, ResultReader> readers_;
+  std::map<std::string, std::shared_ptr<Reader>> readers_;
 };
 
 /// Reads the value of `offset=`.
@@ -105,15 +337,6 @@ void read_shift(const std::string& value, ProgramResult& result) {
         fmt::format("--result: 'offset={}', expected auto or seconds, e.g. offset=0.02", value));
   result.shift = value == "auto" ? TimeShift::estimated : TimeShift::given;
   result.shift_s = *number;
-}
-
-Eigen::Matrix3Xd inlier_rays(const Window& window) {
-  const Eigen::Matrix3d K_inverse = window.K.inverse();
-  const std::vector<int> tracks = window.inlier_tracks(0);
-  Eigen::Matrix3Xd rays(3, std::ssize(tracks));
-  for (Eigen::Index k = 0; k < rays.cols(); ++k)
-    rays.col(k) = (K_inverse * window.points_px[0].col(tracks[k]).homogeneous()).normalized();
-  return rays;
 }
 
 }  // namespace
@@ -150,11 +373,11 @@ Method result_method(const ProgramResult& result, const ResultLog& log, int numb
   method.bind = [readers](const RecordingFacts& recording) -> BoundMethod {
     return [reader = readers->find(recording.name), recording](
                const Window& window, const Sources& sources, ImportedResult& imported) {
-      return reader.initialize(window, sources, recording, imported);
+      return reader->initialize(window, sources, recording, imported);
     };
   };
   method.describe = [readers](const RecordingFacts& recording) {
-    return readers->find(recording.name).describe(recording);
+    return readers->find(recording.name)->describe(recording);
   };
   const bool pattern = is_pattern(result);
   if (pattern)
@@ -166,31 +389,6 @@ Method result_method(const ProgramResult& result, const ResultLog& log, int numb
       number,
       std::move(method),
       pattern ? "result of each recording" + suffixes_of(result) : identity_of(result));
-}
-
-std::optional<Plane> plane_in_view(const Eigen::Matrix3Xd& points,
-                                   const Pose& reference,
-                                   const Window& window) {
-  constexpr double kNear_deg = 2;
-  constexpr int kMinPoints = 10;
-  const Eigen::Matrix3Xd rays = inlier_rays(window);
-  if (rays.cols() == 0) return std::nullopt;
-  const double near = std::cos(radians(kNear_deg));
-  const Eigen::Vector3d middle = rays.rowwise().sum().normalized();
-  const double widest = std::acos(std::min(1.0, (middle.transpose() * rays).minCoeff()));
-  const double in_cone = std::cos(std::min(widest + radians(kNear_deg), M_PI));
-  Eigen::Matrix3Xd seen(3, points.cols());
-  int count = 0;
-  for (const auto& point : points.colwise()) {
-    const Eigen::Vector3d P = to_camera(reference, point);
-    const double distance = P.norm();
-    if (!(P.z() > 0) || middle.dot(P) < in_cone * distance) continue;
-    if ((P.transpose() * rays).maxCoeff() >= near * distance) seen.col(count++) = P;
-  }
-  if (count < kMinPoints) return std::nullopt;
-  const auto plane = fit_plane(seen.leftCols(count));
-  if (!plane) return std::nullopt;
-  return plane_in_camera(*plane, inverse(reference));
 }
 
 }  // namespace gpo

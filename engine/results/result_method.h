@@ -71,19 +71,6 @@ ProgramResult parse_program_result(const std::string& text);
 /// Receives each distinct message about a result's frames, poses and plane once.
 using ResultLog = std::function<void(const std::string& name, const std::string& line)>;
 
-/// The files of a result for one recording. Both functions are thread-safe.
-struct ResultReader {
-  std::function<Initialization(const Window& window,
-                               const Sources& sources,
-                               const RecordingFacts& recording,
-                               ImportedResult& imported)>
-      initialize;
-  std::function<std::optional<ImportedResult>(const RecordingFacts& recording)> describe;
-};
-
-/// Reads the files of a result without `{recording}`. Throws InputError.
-ResultReader read_result(const ProgramResult& result, const ResultLog& log);
-
 /// Returns the result as a method. For each window it has the result's cameras, with missing ones
 /// resected, and the plane through the result's points near the window's inlier tracks or, if these
 /// are few, through points triangulated from its cameras. Windows that the result does not cover
