@@ -138,11 +138,8 @@ Figure metric_figure(std::span<const Row> rows, const FigurePlan& plan) {
   const std::vector<Cell> cells = common_cells(rows, plan);
   Figure figure{
       plan.name + "_meters", plan.title + ": gravity and metric scale by the accelerometer", {}};
-  for (const Axis& axis : kInertialAxes) {
-    const bool known = std::ranges::any_of(
-        cells, [&](const Cell& cell) { return cell.values.at(axis.column).count > 0; });
-    if (known) figure.charts.push_back(chart_of(cells, plan, axis));
-  }
+  for (const Axis& axis : kInertialAxes)
+    if (has_values(cells, axis.column)) figure.charts.push_back(chart_of(cells, plan, axis));
   return figure;
 }
 

@@ -12,44 +12,18 @@
 namespace gpo {
 namespace {
 
-constexpr NumberColumn kResidual{.title = "RMS [px]", .columns = {}, .digits = 3};
-
-std::vector<Row> rows_where(std::span<const Row> rows, const auto& keep) {
-  std::vector<Row> kept;
-  std::ranges::copy_if(rows, std::back_inserter(kept), keep);
-  return kept;
-}
-
-std::vector<std::string> unique_of(std::span<const Row> rows, std::string Row::*member) {
-  std::vector<std::string> found;
-  for (const Row& row : rows)
-    if (std::ranges::find(found, row.*member) == found.end()) found.push_back(row.*member);
-  return found;
-}
-
-/// Returns the cell of a method, empty if there is none.
-Cell cell_or_empty(const std::vector<Cell>& cells, const std::string& method) {
-  const auto found = std::ranges::find(cells, method, &Cell::configuration);
-  return found == cells.end() ? Cell{.configuration = method} : *found;
-}
-
-/// Returns a distribution of a cell; without values if the cell has no windows.
-Distribution distribution_of(const Cell& cell, const NumberColumn& column) {
-  const auto found = cell.values.find(column.columns.front());
-  return found == cell.values.end() ? Distribution{} : found->second;
-}
-
 RecordingLine line_of(const std::string& recording,
                       std::span<const Row> rows,
                       const std::vector<std::string>& methods) {
+  const int frames = rows.front().settings.frames;
   RecordingLine line{.recording = recording, .solved = {}};
   const std::vector<Cell> cells = summarize(rows);
   const std::vector<Cell> common = summarize(on_common_windows(rows));
   for (const std::string& method : methods) {
-    const Cell cell = cell_or_empty(cells, method);
+    const Cell cell = cell_or_empty(cells, method, frames);
     line.windows = std::max(line.windows, cell.windows);
     line.solved.push_back(cell.ok);
-    line.common_cells.push_back(cell_or_empty(common, method));
+    line.common_cells.push_back(cell_or_empty(common, method, frames));
     line.common = std::max(line.common, line.common_cells.back().windows);
   }
   return line;
@@ -58,19 +32,12 @@ RecordingLine line_of(const std::string& recording,
 std::vector<NumberColumn> columns_with_values(const std::vector<RecordingLine>& lines) {
   std::vector<Cell> cells;
   for (const RecordingLine& line : lines)
-    for (const Cell& cell : line.common_cells)
-      if (cell.windows > 0) cells.push_back(cell);
-  const auto has_values = [&](const char* column) {
-    return std::ranges::any_of(cells,
-                               [&](const Cell& cell) { return cell.values.at(column).count > 0; });
-  };
-  std::vector<NumberColumn> columns = error_columns(has_values);
-  std::erase_if(columns,
-                [&](const NumberColumn& column) { return !has_values(column.columns.front()); });
-  if (columns.empty()) {
-    columns.push_back(kResidual);
-    columns.back().columns = {"rms_px"};
-  }
+    cells.insert(cells.end(), line.common_cells.begin(), line.common_cells.end());
+  std::vector<NumberColumn> columns = error_columns(cells);
+  std::erase_if(columns, [&](const NumberColumn& column) {
+    return !has_values(cells, column.columns.front());
+  });
+  if (columns.empty()) columns.push_back({.title = "RMS [px]", .columns = {"rms_px"}, .digits = 3});
   return columns;
 }
 
@@ -89,7 +56,7 @@ std::vector<std::size_t> best_of(const RecordingLine& line, const NumberColumn& 
   double least = 0;
   int known = 0;
   for (const Cell& cell : line.common_cells) {
-    const auto& median = distribution_of(cell, column).median;
+    const auto& median = distribution_of(cell, column.columns.front()).median;
     if (!median) continue;
     if (known++ == 0 || *median < least) {
       least = *median;
@@ -97,7 +64,7 @@ std::vector<std::size_t> best_of(const RecordingLine& line, const NumberColumn& 
     }
   }
   for (std::size_t i = 0; known > 1 && i < line.common_cells.size(); ++i) {
-    const auto& median = distribution_of(line.common_cells[i], column).median;
+    const auto& median = distribution_of(line.common_cells[i], column.columns.front()).median;
     if (median && formatted(*median, column) == least_text) best.push_back(i);
   }
   return best;
@@ -121,7 +88,9 @@ std::string latex_block(const RecordingTable& table, const NumberColumn& column)
     text += fmt::format("    {} & {}/{}", latex_text(name_of(line)), line.common, line.windows);
     for (std::size_t i = 0; i < table.methods.size(); ++i) {
       const bool bold = std::ranges::find(best, i) != best.end();
-      text += " & " + latex_cell(distribution_of(line.common_cells[i], column), column, bold);
+      text +=
+          " & " +
+          latex_cell(distribution_of(line.common_cells[i], column.columns.front()), column, bold);
     }
     text += " \\\\\n";
   }
@@ -203,7 +172,7 @@ std::string recordings_markdown(std::span<const Row> rows) {
         std::vector<std::string> cells{name_of(line),
                                        fmt::format("{}/{}", line.common, line.windows)};
         for (const Cell& cell : line.common_cells) {
-          const Distribution d = distribution_of(cell, column);
+          const Distribution d = distribution_of(cell, column.columns.front());
           cells.push_back(d.median ? fmt::format("{} [{}, {}]",
                                                  formatted(*d.median, column),
                                                  formatted(*d.lower, column),
@@ -251,7 +220,7 @@ std::string recordings_csv(std::span<const Row> rows) {
                             line.solved[i],
                             line.solved[i] > 0 ? line.common : 0);
         for (const NumberColumn& column : columns) {
-          const Distribution d = distribution_of(line.common_cells[i], column);
+          const Distribution d = distribution_of(line.common_cells[i], column.columns.front());
           for (const auto* value : {&d.median, &d.lower, &d.upper})
             text += "," + csv_number(*value, column);
         }

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "engine/experiment/error_columns.h"
 #include "engine/experiment/summary.h"
 
 namespace gpo {

@@ -2,13 +2,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/experiment/summary.h"
 
-#include "engine/experiment/error_columns.h"
 #include "engine/files/text_file.h"
 #include "engine/geometry/statistics.h"
 
 #include <algorithm>
 #include <cmath>
-#include <set>
 #include <tuple>
 
 #include <fmt/format.h>
@@ -27,13 +25,6 @@ const std::vector<std::string> kSummaryColumns = split(
 using WindowKey = std::tuple<std::string, int, int>;  // recording, start, frames
 WindowKey window_of(const Row& row) {
   return {row.recording, row.settings.start, row.settings.frames};
-}
-
-std::vector<std::string> configurations_in(std::span<const Row> rows) {
-  std::vector<std::string> keys;
-  for (const Row& row : rows)
-    if (std::ranges::find(keys, row.configuration) == keys.end()) keys.push_back(row.configuration);
-  return keys;
 }
 
 Cell cell_of(std::span<const Row> rows, const std::string& configuration, int frames) {
@@ -56,7 +47,7 @@ Cell cell_of(std::span<const Row> rows, const std::string& configuration, int fr
 std::string number(const Cell& cell, const NumberColumn& column) {
   double sum = 0;
   for (const char* name : column.columns) {
-    const auto& median = cell.values.at(name).median;
+    const auto median = distribution_of(cell, name).median;
     if (!median) return "-";
     sum += *median;
   }
@@ -85,53 +76,22 @@ std::string measured_text(std::span<const Row> rows, int frames) {
   return text;
 }
 
-std::vector<NumberColumn> error_columns_of(const std::vector<Cell>& cells) {
-  return error_columns([&](const char* column) {
-    return std::ranges::any_of(cells,
-                               [&](const Cell& cell) { return cell.values.at(column).count > 0; });
-  });
-}
-
-/// Returns the number of windows of each length that all methods solved.
-std::map<int, int> common_counts(std::span<const Row> common) {
-  std::map<int, std::set<WindowKey>> windows;
-  for (const Row& row : common) windows[row.settings.frames].insert(window_of(row));
-  std::map<int, int> counts;
-  for (const auto& [frames, keys] : windows) counts[frames] = static_cast<int>(keys.size());
-  return counts;
-}
-
-/// Returns the median errors of a configuration at a length; "-" for unknown ones.
-std::vector<std::string> medians_of(const std::vector<Cell>& cells,
-                                    const Cell& like,
-                                    const std::vector<NumberColumn>& columns) {
-  const auto cell = std::ranges::find_if(cells, [&](const Cell& one) {
-    return one.configuration == like.configuration && one.frames == like.frames;
-  });
-  std::vector<std::string> texts;
-  for (const NumberColumn& column : columns)
-    texts.push_back(cell == cells.end() ? "-" : number(*cell, column));
-  return texts;
-}
-
 /// Cells of the lengths to show, from all windows and from those that all methods solved.
 struct Overview {
-  std::set<int> shown;  ///< numbers of frames
-  std::vector<Cell> cells;
-  std::vector<Cell> common_cells;
+  std::vector<Cell> cells = {};
+  std::vector<Cell> common_cells = {};  ///< one per cell; without windows if it solved none
   std::vector<NumberColumn> columns;
-  std::map<int, int> counts;  ///< common windows by number of frames
 };
 
 Overview overview_of(std::span<const Row> rows) {
-  const std::vector<Row> common = on_common_windows(rows);
-  Overview overview;
-  overview.shown = lengths_to_show(lengths_in(rows));
-  overview.cells = summarize(rows);
-  overview.common_cells = summarize(common);
-  overview.columns = error_columns_of(overview.cells);
-  overview.counts = common_counts(common);
-  for (const Cell& cell : overview.cells) overview.counts.try_emplace(cell.frames, 0);
+  const std::vector<Cell> all = summarize(rows), common = summarize(on_common_windows(rows));
+  const std::set<int> shown = lengths_to_show(lengths_in(rows));
+  Overview overview{.columns = error_columns(all)};
+  for (const Cell& cell : all) {
+    if (!shown.contains(cell.frames)) continue;
+    overview.cells.push_back(cell);
+    overview.common_cells.push_back(cell_or_empty(common, cell.configuration, cell.frames));
+  }
   return overview;
 }
 
@@ -158,9 +118,9 @@ ordered_json cells_json(std::span<const Row> rows) {
 ordered_json recordings_json(const Experiment& experiment, std::span<const Row> rows) {
   ordered_json recordings = ordered_json::array();
   for (const ExperimentRecording& recording : experiment.recordings) {
-    std::vector<Row> own(rows.begin(), rows.end());
-    std::erase_if(own, [&](const Row& row) { return row.recording != recording.name; });
-    recordings.push_back({{"recording", recording.name}, {"cells", cells_json(own)}});
+    const auto own = [&](const Row& row) { return row.recording == recording.name; };
+    recordings.push_back(
+        {{"recording", recording.name}, {"cells", cells_json(rows_where(rows, own))}});
   }
   return recordings;
 }
@@ -185,7 +145,34 @@ ordered_json timing_json(std::span<const Row> rows) {
   return {{"jobs", jobs}, {"processors", processors}};
 }
 
+/// Formats three significant digits without an exponent.
+std::string significant(double value) {
+  const double size = std::abs(value);
+  const int before = size > 0 ? static_cast<int>(std::floor(std::log10(size))) : 0;
+  return fmt::format("{:.{}f}", value, std::clamp(2 - before, 0, 9));
+}
+
 }  // namespace
+
+std::vector<std::string> unique_of(std::span<const Row> rows, std::string Row::*member) {
+  std::vector<std::string> found;
+  for (const Row& row : rows)
+    if (std::ranges::find(found, row.*member) == found.end()) found.push_back(row.*member);
+  return found;
+}
+
+std::set<int> lengths_in(std::span<const Row> rows) {
+  std::set<int> lengths;
+  for (const Row& row : rows) lengths.insert(row.settings.frames);
+  return lengths;
+}
+
+std::set<int> lengths_to_show(const std::set<int>& all) {
+  constexpr std::array kPreferred{10, 30, 60};
+  if (std::ranges::includes(all, kPreferred)) return {kPreferred.begin(), kPreferred.end()};
+  const std::vector<int> lengths(all.begin(), all.end());
+  return {lengths.front(), lengths[lengths.size() / 2], lengths.back()};
+}
 
 Distribution distribution(std::vector<double> values) {
   if (values.empty()) return {};
@@ -198,10 +185,45 @@ Distribution distribution(std::vector<double> values) {
 
 std::vector<Cell> summarize(std::span<const Row> rows) {
   std::vector<Cell> cells;
-  for (const std::string& configuration : configurations_in(rows))
+  for (const std::string& configuration : unique_of(rows, &Row::configuration))
     for (const int frames : lengths_in(rows)) cells.push_back(cell_of(rows, configuration, frames));
   std::erase_if(cells, [](const Cell& cell) { return cell.windows == 0; });
   return cells;
+}
+
+Cell cell_or_empty(std::span<const Cell> cells, const std::string& configuration, int frames) {
+  const auto found = std::ranges::find_if(cells, [&](const Cell& one) {
+    return one.configuration == configuration && one.frames == frames;
+  });
+  return found == cells.end() ? Cell{.configuration = configuration, .frames = frames} : *found;
+}
+
+Distribution distribution_of(const Cell& cell, const std::string& column) {
+  const auto found = cell.values.find(column);
+  return found == cell.values.end() ? Distribution{} : found->second;
+}
+
+bool has_values(std::span<const Cell> cells, const std::string& column) {
+  return std::ranges::any_of(
+      cells, [&](const Cell& cell) { return distribution_of(cell, column).count > 0; });
+}
+
+std::string formatted(double value, const NumberColumn& column) {
+  return column.digits == kSignificant
+             ? significant(column.factor * value)
+             : fmt::format("{:.{}f}", column.factor * value, column.digits);
+}
+
+std::vector<NumberColumn> error_columns(std::span<const Cell> cells) {
+  std::vector<NumberColumn> columns{{.title = "PNE [deg]", .columns = {"pne_deg"}, .digits = 3},
+                                    {.title = "ATE [mm]", .columns = {"ate_m"}, .factor = 1e3},
+                                    {.title = "PDE [mm]", .columns = {"pde_m"}, .factor = 1e3}};
+  const bool gravity = has_values(cells, "gravity_error_deg");
+  if (gravity || has_values(cells, "scale_error_percent"))
+    columns.push_back({.title = "scale error [%]", .columns = {"scale_error_percent"}});
+  if (gravity)
+    columns.push_back({.title = "gravity error [deg]", .columns = {"gravity_error_deg"}});
+  return columns;
 }
 
 std::vector<Row> on_common_windows(std::span<const Row> rows) {
@@ -212,19 +234,15 @@ std::vector<Row> on_common_windows(std::span<const Row> rows) {
     solvers[row.settings.frames].insert(row.configuration);
     ++solved[window_of(row)];
   }
-  std::vector<Row> common(rows.begin(), rows.end());
-  std::erase_if(common, [&](const Row& row) {
-    return !row.ok() || solved[window_of(row)] != solvers[row.settings.frames].size();
+  return rows_where(rows, [&](const Row& row) {
+    return row.ok() && solved[window_of(row)] == solvers[row.settings.frames].size();
   });
-  return common;
 }
 
 std::vector<Row> rows_of(std::span<const Row> rows, std::span<const Configuration> configurations) {
   std::set<std::string> keys;
   for (const Configuration& configuration : configurations) keys.insert(key_of(configuration));
-  std::vector<Row> chosen(rows.begin(), rows.end());
-  std::erase_if(chosen, [&](const Row& row) { return !keys.contains(row.configuration); });
-  return chosen;
+  return rows_where(rows, [&](const Row& row) { return keys.contains(row.configuration); });
 }
 
 Table running_time_table(std::span<const Row> rows) {
@@ -259,41 +277,39 @@ Table running_time_table(std::span<const Row> rows) {
 }
 
 Table overview_table(std::span<const Row> rows) {
-  const auto [shown, cells, common_cells, columns, counts] = overview_of(rows);
+  const auto [cells, common_cells, columns] = overview_of(rows);
   Table table;
   table.caption =
       "Medians over the windows of a length that all methods solved (`common`). `solved`: windows "
       "that a method solved, of all. A method that solved none of a length is left out there";
   table.header = {"method", "frames", "solved", "common"};
   for (const NumberColumn& column : columns) table.header.emplace_back(column.title);
-  for (const Cell& cell : cells) {
-    if (!shown.contains(cell.frames)) continue;
-    std::vector<std::string> line{cell.configuration,
-                                  std::to_string(cell.frames),
-                                  windows_of(cell),
-                                  std::to_string(cell.ok > 0 ? counts.at(cell.frames) : 0)};
-    for (const std::string& text : medians_of(common_cells, cell, columns)) line.push_back(text);
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    std::vector<std::string> line{cells[i].configuration,
+                                  std::to_string(cells[i].frames),
+                                  windows_of(cells[i]),
+                                  std::to_string(common_cells[i].windows)};
+    for (const NumberColumn& column : columns) line.push_back(number(common_cells[i], column));
     table.lines.push_back(std::move(line));
   }
   return table;
 }
 
 Table overview_numbers(std::span<const Row> rows) {
-  const auto [shown, cells, common_cells, columns, counts] = overview_of(rows);
+  const auto [cells, common_cells, columns] = overview_of(rows);
   Table table{.caption = {}, .header = {"method", "frames", "solved", "of"}, .lines = {}};
   for (const NumberColumn& column : columns) table.header.emplace_back(column.title);
   table.header.emplace_back("common");
   for (const NumberColumn& column : columns)
     table.header.push_back(fmt::format("common {}", column.title));
-  for (const Cell& cell : cells) {
-    if (!shown.contains(cell.frames)) continue;
-    std::vector<std::string> line{cell.configuration,
-                                  std::to_string(cell.frames),
-                                  std::to_string(cell.ok),
-                                  std::to_string(cell.windows)};
-    for (const std::string& text : medians_of(cells, cell, columns)) line.push_back(text);
-    line.push_back(std::to_string(cell.ok > 0 ? counts.at(cell.frames) : 0));
-    for (const std::string& text : medians_of(common_cells, cell, columns)) line.push_back(text);
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    std::vector<std::string> line{cells[i].configuration,
+                                  std::to_string(cells[i].frames),
+                                  std::to_string(cells[i].ok),
+                                  std::to_string(cells[i].windows)};
+    for (const NumberColumn& column : columns) line.push_back(number(cells[i], column));
+    line.push_back(std::to_string(common_cells[i].windows));
+    for (const NumberColumn& column : columns) line.push_back(number(common_cells[i], column));
     std::ranges::replace(line, "-", "");
     table.lines.push_back(std::move(line));
   }

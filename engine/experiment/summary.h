@@ -6,7 +6,24 @@
 #include "engine/experiment/experiment.h"
 #include "engine/experiment/row.h"
 
+#include <algorithm>
+#include <set>
+
 namespace gpo {
+
+/// Returns the rows for which `keep(row)` holds.
+std::vector<Row> rows_where(std::span<const Row> rows, const auto& keep) {
+  std::vector<Row> kept;
+  std::ranges::copy_if(rows, std::back_inserter(kept), keep);
+  return kept;
+}
+
+/// Returns the distinct values of a column in the order of the rows.
+std::vector<std::string> unique_of(std::span<const Row> rows, std::string Row::*member);
+
+std::set<int> lengths_in(std::span<const Row> rows);
+/// Returns 10, 30 and 60 frames, or else the shortest, a middle and the longest length.
+std::set<int> lengths_to_show(const std::set<int>& all);
 
 /// Median and quartiles, linear between the order statistics (Hyndman and Fan's type 7).
 struct Distribution {
@@ -27,6 +44,32 @@ struct Cell {
 
 /// Returns the cells by configuration, then length, without those that have no windows.
 std::vector<Cell> summarize(std::span<const Row> rows);
+
+/// Returns the cell of a configuration and a length; one without windows and values if there is
+/// none.
+Cell cell_or_empty(std::span<const Cell> cells, const std::string& configuration, int frames);
+/// Returns the distribution of a column of results.csv; empty if the cell has no values.
+Distribution distribution_of(const Cell& cell, const std::string& column);
+/// Returns whether any cell has a value in this column of results.csv.
+bool has_values(std::span<const Cell> cells, const std::string& column);
+
+inline constexpr int kSignificant = -1;  // three significant digits
+
+/// A column of numbers in a table.
+struct NumberColumn {
+  const char* title;
+  std::vector<const char*> columns;  ///< columns of results.csv, whose medians are added
+  double factor = 1;
+  bool per_frame = false;
+  int digits = kSignificant;  ///< after the decimal point
+};
+
+/// Formats a value in the unit of the column, without its `per_frame`; three significant digits
+/// have no exponent: "0.0612", "3.98", "1235".
+std::string formatted(double value, const NumberColumn& column);
+
+/// Returns PNE, ATE and PDE, and the errors of scale and gravity if these have values.
+std::vector<NumberColumn> error_columns(std::span<const Cell> cells);
 
 /// Returns the rows whose window all configurations solved, so that methods are compared on the
 /// same windows. A configuration that solved no window of a length is ignored for that length.
