@@ -3,7 +3,7 @@
 #include "ui/window_report.h"
 
 #include "engine/base/error.h"
-#include "engine/experiment/program_identity.h"
+#include "engine/experiment/experiment.h"
 #include "engine/files/output_file.h"
 #include "engine/inspection/report/report.h"
 #include "engine/inspection/studies/studies.h"

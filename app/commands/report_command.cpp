@@ -3,7 +3,7 @@
 #include "app/commands/commands.h"
 #include "app/recordings/recordings.h"
 #include "engine/base/error.h"
-#include "engine/experiment/program_identity.h"
+#include "engine/experiment/experiment.h"
 #include "engine/inspection/inspector.h"
 #include "ui/views/report/report.h"
 

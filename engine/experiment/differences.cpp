@@ -1,6 +1,6 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/experiment/differences.h"
+#include "engine/experiment/experiment.h"
 
 #include <algorithm>
 #include <functional>
@@ -44,51 +44,35 @@ std::map<std::string, std::string> identities_on(const Experiment& experiment,
   return identities;
 }
 
-ExperimentDifferences differences(const Experiment& a, const Experiment& b) {
+ExperimentDifferences differences(const Experiment& a, const Experiment& b, bool may_add) {
+  const auto differ = [&]<class Projection = std::identity>(
+      const auto& one, const auto& other, Projection projection = {}) {
+    return may_add ? lacks(other, one, projection)
+                   : !std::ranges::equal(one, other, {}, projection, projection);
+  };
   ExperimentDifferences found;
-  if (a.configurations != b.configurations) found.plan.emplace_back("methods");
-  if (a.lengths != b.lengths) found.plan.emplace_back("lengths");
+  constexpr auto kName = &ExperimentRecording::name;
+  if (differ(a.configurations, b.configurations)) found.plan.emplace_back("methods");
+  if (differ(a.lengths, b.lengths)) found.plan.emplace_back("lengths");
   if (a.seed != b.seed) found.plan.emplace_back("seed");
   if (a.program != b.program) found.content.emplace_back("build of the program");
-  if (a.commands != b.commands) found.content.emplace_back("command or files of a method");
-  constexpr auto kName = &ExperimentRecording::name;
-  if (!std::ranges::equal(a.recordings, b.recordings, {}, kName, kName)) {
+  if (may_add ? has_other(a.commands, b.commands) : a.commands != b.commands)
+    found.content.emplace_back("command or files of a method");
+  if (differ(a.recordings, b.recordings, kName)) {
     found.plan.emplace_back("recordings");
-    return found;
+    if (!may_add) return found;
   }
   bool other_starts = false;
-  for (std::size_t i = 0; i < a.recordings.size(); ++i) {
-    const ExperimentRecording &one = a.recordings[i], &other = b.recordings[i];
-    const auto parts = differing_parts(one.content, other.content);
-    for (const std::string& part : parts)
-      found.content.push_back(fmt::format("{} of {}", part, one.name));
-    // `end` depends on lengths and frames: if these differ, so do the starts.
-    other_starts = other_starts || (parts.empty() && one.starts != other.starts);
-  }
-  if (other_starts && a.lengths == b.lengths) found.plan.emplace_back("starts");
-  return found;
-}
-
-ExperimentDifferences differences_from_earlier(const Experiment& earlier, const Experiment& later) {
-  ExperimentDifferences found;
-  constexpr auto kName = &ExperimentRecording::name;
-  if (lacks(later.configurations, earlier.configurations)) found.plan.emplace_back("methods");
-  if (lacks(later.lengths, earlier.lengths)) found.plan.emplace_back("lengths");
-  if (earlier.seed != later.seed) found.plan.emplace_back("seed");
-  if (lacks(later.recordings, earlier.recordings, kName)) found.plan.emplace_back("recordings");
-  if (earlier.program != later.program) found.content.emplace_back("build of the program");
-  if (has_other(earlier.commands, later.commands))
-    found.content.emplace_back("command or files of a method");
-  bool fewer_starts = false;
-  for (const ExperimentRecording& one : earlier.recordings) {
-    const auto other = std::ranges::find(later.recordings, one.name, kName);
-    if (other == later.recordings.end()) continue;
+  for (const ExperimentRecording& one : a.recordings) {
+    const auto other = std::ranges::find(b.recordings, one.name, kName);
+    if (other == b.recordings.end()) continue;
     const auto parts = differing_parts(one.content, other->content);
     for (const std::string& part : parts)
       found.content.push_back(fmt::format("{} of {}", part, one.name));
-    fewer_starts = fewer_starts || (parts.empty() && lacks(other->starts, one.starts));
+    // `end` depends on lengths and frames: if these differ, so do the starts.
+    other_starts = other_starts || (parts.empty() && differ(one.starts, other->starts));
   }
-  if (fewer_starts && earlier.lengths == later.lengths) found.plan.emplace_back("starts");
+  if (other_starts && a.lengths == b.lengths) found.plan.emplace_back("starts");
   return found;
 }
 

@@ -3,7 +3,6 @@
 #include "engine/experiment/experiment.h"
 
 #include "engine/base/error.h"
-#include "engine/experiment/program_identity.h"
 #include "engine/files/refuse.h"
 #include "engine/files/text_file.h"
 #include "engine/methods/recording_method.h"

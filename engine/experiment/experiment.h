@@ -117,13 +117,22 @@ struct Experiment {
 
 MethodTable methods_of(const Experiment& experiment);
 
+/// Returns version and build id of this program: programs of one version may differ.
+std::string program_identity();
+
+/// Returns the identities of the user's methods on a recording, by key.
+std::map<std::string, std::string> identities_on(const Experiment& experiment,
+                                                 const ExperimentRecording& recording);
+
 /// The names of what differs between two experiments. If there are none, their results are equal
 /// except for running times, wherever the recordings are stored.
 struct ExperimentDifferences {
   std::vector<std::string> plan;     ///< different requests: "lengths", "methods"
   std::vector<std::string> content;  ///< same request, different input: "fx of desk"
 };
-ExperimentDifferences differences(const Experiment& a, const Experiment& b);
+/// `may_add`: `b` is a later experiment in the folder of `a` and may add methods, lengths, starts
+/// and recordings. `plan` then names what it lacks.
+ExperimentDifferences differences(const Experiment& a, const Experiment& b, bool may_add = false);
 
 /// Returns "`lengths` differs" or "`lengths`, `methods` differ".
 std::string differ_text(const std::vector<std::string>& names);

@@ -46,4 +46,11 @@ std::string latex_text(const std::string& text);
 std::vector<Figure> recording_figures(std::span<const Row> rows,
                                       const std::vector<Configuration>& configurations);
 
+/// Returns the time offsets of other programs' results, recording minus result, estimated over
+/// whole recordings, with their standard deviations and what is applied [ms]. Undetermined ones are
+/// empty. No lines for results without times and for recordings without a clock reference.
+/// `recordings` are those of the experiment, in its order.
+Table time_offset_table(const Experiment& experiment,
+                        std::span<const std::shared_ptr<const Recording>> recordings);
+
 }  // namespace gpo

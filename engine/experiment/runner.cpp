@@ -5,8 +5,7 @@
 #include "engine/base/error.h"
 #include "engine/base/parallel.h"
 #include "engine/base/stop.h"
-#include "engine/experiment/differences.h"
-#include "engine/experiment/time_offsets.h"
+#include "engine/experiment/recording_tables.h"
 #include "engine/files/output_file.h"
 #include "engine/files/text_file.h"
 #include "engine/inspection/inspector.h"
@@ -275,7 +274,7 @@ std::vector<std::string> begin_experiment(const fs::path& folder, const Experime
     make_folder(folder);
   } else {
     earlier = read_experiment(folder, methods_of(experiment));
-    found = differences_from_earlier(earlier, experiment);
+    found = differences(earlier, experiment, /*may_add=*/true);
   }
   if (!found.plan.empty())
     throw InputError(

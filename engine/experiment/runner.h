@@ -41,7 +41,7 @@ bool run_experiment(const Experiment& experiment,
                     const RunOptions& options);
 
 /// Creates a folder with `experiment.json` and `windows/`, or reuses one whose plan this one
-/// continues (`differences_from_earlier`); returns the names of differing recordings or programs,
+/// continues (`differences`); returns the names of differing recordings or programs,
 /// whose windows will be redone. Throws InputError.
 std::vector<std::string> begin_experiment(const fs::path& folder, const Experiment& experiment);
 
