@@ -4,7 +4,8 @@
 
 #include "engine/base/error.h"
 #include "engine/files/csv_table.h"
-#include "engine/inspection/recording_facts.h"
+#include "engine/inspection/inspector.h"
+#include "engine/methods/recording_method.h"
 
 #include <algorithm>
 
@@ -289,7 +290,7 @@ Table time_offset_table(const Experiment& experiment,
     for (const Configuration& one : experiment.configurations) {
       const RecordingMethod* method = recording_method(one.method.row());
       if (method == nullptr) continue;
-      if (!facts) facts = recording_facts(*recording);
+      if (!facts) facts = facts_for_results(*recording);
       try {
         const auto imported = method->describe(*facts);
         if (!imported) continue;

@@ -4,7 +4,7 @@
 
 #include "engine/base/error.h"
 #include "engine/files/refuse.h"
-#include "engine/inspection/recording_facts.h"
+#include "engine/methods/recording_method.h"
 #include "engine/pipeline/method_defaults.h"
 #include "engine/recording/images/frame_faults.h"
 
@@ -251,7 +251,7 @@ struct Inspector::Stages {
   bool bind_to_recording(MethodChoice& method, ImportedResult& imported) {
     const RecordingMethod* result = recording_method(method.row());
     if (result == nullptr) return false;
-    if (!facts) facts = recording_facts(*recording);
+    if (!facts) facts = facts_for_results(*recording);
     Method bound = method.row();
     bound.initialize_from = [initialize = result->bind(*facts), &imported](
                                 const Window& window, const Sources& sources, const Watch&) {

@@ -10,6 +10,7 @@
 namespace gpo {
 
 enum class FrameFault;
+struct RecordingFacts;
 
 /// Called with a stage's name, the steps done and their number (0: unknown): "tracking 41/60".
 using Progress = std::function<void(const std::string& stage, int done, int of)>;
@@ -77,6 +78,10 @@ WindowRotations window_rotations(const Recording& recording,
                                  const WindowTruth* truth,
                                  const InitializeOptions& options,
                                  const std::stop_token& stop);
+
+/// Returns what results of other programs need. The clock reference has the true rotations, or else
+/// those of the gyroscope as recorded; it is null without both.
+RecordingFacts facts_for_results(const Recording& recording);
 
 /// Computes inspections. Caches each stage (tracks, truth, inliers, rotations) until its own inputs
 /// change. For windows from one start it caches tracks and truth of the longest, which begin with

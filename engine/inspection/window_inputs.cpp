@@ -4,6 +4,7 @@
 #include "engine/frontend/gyroscope_alignment.h"
 #include "engine/frontend/tracking/tracker.h"
 #include "engine/inspection/inspector.h"
+#include "engine/methods/recording_method.h"
 #include "engine/pipeline/method_defaults.h"
 #include "engine/recording/board/board.h"
 #include "engine/recording/images/frame_faults.h"
@@ -44,6 +45,35 @@ std::string why_not_covered_by(const Gyroscope& gyroscope, const Window& window)
   const auto& times = window.timestamps_ns;
   return why_not_covered(
       gyroscope, times.front() + gyroscope.time_offset_ns, times.back() + gyroscope.time_offset_ns);
+}
+
+ClockReference clock_of_truth(const Recording& recording) {
+  ClockReference reference{.source = "the ground truth", .timestamps_ns = {}, .R_wc = {}};
+  if (!recording.truth) return reference;
+  const auto& poses = recording.truth->poses;
+  for (std::size_t i = 0; i < poses.size(); ++i) {
+    if (!poses[i]) continue;
+    reference.timestamps_ns.push_back(recording.timestamps_ns[i]);
+    reference.R_wc.push_back(poses[i]->R_wc);
+  }
+  return reference;
+}
+
+ClockReference clock_of_rates(const Gyroscope& gyroscope) {
+  ClockReference reference{
+      .source = "the gyroscope", .timestamps_ns = {}, .R_wc = {}, .rates_are_biased = true};
+  Eigen::Matrix3d R = Eigen::Matrix3d::Identity();
+  const auto& times_ns = gyroscope.timestamps_ns;
+  for (std::size_t i = 0; i < times_ns.size(); ++i) {
+    if (i > 0) {
+      const double dt_s = 1e-9 * static_cast<double>(times_ns[i] - times_ns[i - 1]);
+      const Eigen::Vector3d mean = 0.5 * (gyroscope.rates_rad_s[i - 1] + gyroscope.rates_rad_s[i]);
+      R = R * so3_exp(gyroscope.R_gyro_camera.transpose() * (mean - gyroscope.bias_rad_s) * dt_s);
+    }
+    reference.timestamps_ns.push_back(times_ns[i] - gyroscope.time_offset_ns);
+    reference.R_wc.push_back(R);
+  }
+  return reference;
 }
 
 }  // namespace
@@ -203,6 +233,17 @@ WindowRotations window_rotations(const Recording& recording,
           false,
           fmt::format(
               "the gyroscope is not used, it does not fit the images: {}; {}", misfit, kAdvice)};
+}
+
+RecordingFacts facts_for_results(const Recording& recording) {
+  constexpr std::ptrdiff_t kLeastRotations = 10;
+  RecordingFacts facts{.name = recording.name, .T_body_camera = recording.T_body_camera};
+  ClockReference reference = clock_of_truth(recording);
+  if (std::ssize(reference.R_wc) < kLeastRotations && recording.gyroscope)
+    reference = clock_of_rates(*recording.gyroscope);
+  if (std::ssize(reference.R_wc) >= kLeastRotations)
+    facts.clock = std::make_shared<const ClockReference>(std::move(reference));
+  return facts;
 }
 
 }  // namespace gpo
