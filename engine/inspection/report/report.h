@@ -94,9 +94,6 @@ nlohmann::ordered_json pose_uncertainty_json(const PoseUncertainty& uncertainty)
 /// Returns the short table that `run` prints, with units.
 std::string to_text(const Inspection& inspection);
 
-/// Returns the map points as ASCII PLY with their track's id.
-std::string to_ply(const Inspection& inspection, const ExportWorld& world = {});
-
 struct CameraPath {
   std::vector<std::int64_t> timestamps_ns;
   std::vector<Pose> cameras;  ///< one per time stamp

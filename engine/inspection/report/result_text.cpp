@@ -270,21 +270,6 @@ std::string to_text(const Inspection& inspection) {
   return text;
 }
 
-std::string to_ply(const Inspection& inspection, const ExportWorld& world) {
-  const auto& points = inspection.initialization->points;
-  std::string text = fmt::format(
-      "ply\nformat ascii 1.0\ncomment {}\n"
-      "element vertex {}\nproperty double x\nproperty double y\nproperty double z\nproperty int "
-      "track\nend_header\n",
-      world.description(),
-      points.size());
-  for (const MapPoint& point : points) {
-    const Eigen::Vector3d at = world.T_world_reference * point.position;
-    text += fmt::format("{:.9f} {}\n", fmt::join(at, " "), inspection.tracks->ids[point.track]);
-  }
-  return text;
-}
-
 CameraPath estimated_path(const Inspection& inspection, const ExportWorld& world) {
   if (!inspection.initialization->ok)
     throw InputError(fmt::format("{}: the initialization failed ({}), so there is no trajectory",
