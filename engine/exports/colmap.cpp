@@ -11,7 +11,6 @@
 #include <map>
 
 #include <Eigen/Geometry>
-#include <Eigen/LU>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 

@@ -6,7 +6,6 @@
 #include "engine/files/output_file.h"
 #include "engine/files/refuse.h"
 
-#include <algorithm>
 #include <array>
 
 #include <fmt/format.h>

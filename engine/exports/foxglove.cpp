@@ -10,7 +10,6 @@
 #include "engine/recording/images/images.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include <Eigen/Geometry>
 #include <fmt/format.h>

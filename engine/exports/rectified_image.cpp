@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include <Eigen/LU>
 #include <opencv2/imgproc.hpp>
 
 namespace gpo {

@@ -6,8 +6,6 @@
 #include "engine/pipeline/pipeline.h"
 #include "engine/recording/layouts/write_recording.h"
 
-#include <algorithm>
-
 #include <fmt/format.h>
 #include <opencv2/imgproc.hpp>
 

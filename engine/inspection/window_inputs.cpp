@@ -5,7 +5,6 @@
 #include "engine/frontend/tracking/tracker.h"
 #include "engine/inspection/inspector.h"
 #include "engine/methods/recording_method.h"
-#include "engine/pipeline/method_defaults.h"
 #include "engine/recording/board/board.h"
 #include "engine/recording/images/frame_faults.h"
 

@@ -10,7 +10,6 @@
 #include <limits>
 
 #include <Eigen/Cholesky>
-#include <Eigen/LU>
 
 namespace gpo {
 namespace {
