@@ -130,94 +130,80 @@ ordered_json annotations_json(const Inspection& inspection, int frame) {
       {"circles", circles}, {"points", ordered_json::array()}, {"texts", ordered_json::array()}};
 }
 
-class Entities {
- public:
-  explicit Entities(const ExportScene& scene) : scene_(scene) {}
+ordered_json entity(const ExportScene& scene, const std::string& id) {
+  ordered_json made{{"timestamp", time_json(scene.inspection.window->timestamps_ns.front())},
+                    {"frame_id", kWorldFrame},
+                    {"id", id},
+                    {"lifetime", {{"sec", 0}, {"nsec", 0}}},
+                    {"frame_locked", false},
+                    {"metadata", ordered_json::array()}};
+  made["metadata"].push_back({{"key", "world"}, {"value", scene.world.description()}});
+  for (const char* list :
+       {"arrows", "cubes", "spheres", "cylinders", "lines", "triangles", "texts", "models"})
+    made[list] = ordered_json::array();
+  return made;
+}
 
-  ordered_json update() {
-    ordered_json entities = ordered_json::array();
-    for (const ScenePlane& plane : scene_.planes) entities.push_back(plane_entity(plane));
-    for (const SceneCube& cube : scene_.cubes) entities.push_back(cube_entity(cube));
-    entities.push_back(points_entity());
-    entities.push_back(path_entity());
-    return {{"deletions", ordered_json::array()}, {"entities", entities}};
+ordered_json points_json(std::span<const Vector3d> points) {
+  ordered_json list = ordered_json::array();
+  for (const Vector3d& point : points) list.push_back(vector_json(point));
+  return list;
+}
+
+ordered_json line_json(std::span<const Vector3d> points, int type, std::uint32_t rgb) {
+  return {{"type", type},
+          {"pose", pose_json(Eigen::Matrix3d::Identity(), Vector3d::Zero())},
+          {"thickness", 2},
+          {"scale_invariant", true},
+          {"points", points_json(points)},
+          {"color", color_json(rgb, 1)},
+          {"colors", ordered_json::array()},
+          {"indices", ordered_json::array()}};
+}
+
+/// A sphere or a cube.
+ordered_json solid_json(const ordered_json& pose, double side, const ordered_json& color) {
+  return {{"pose", pose}, {"size", vector_json(Vector3d::Constant(side))}, {"color", color}};
+}
+
+ordered_json plane_entity(const ExportScene& scene, const ScenePlane& plane) {
+  constexpr int kLineLoop = 1;
+  ordered_json made = entity(scene, plane.title);
+  made["triangles"].push_back({{"pose", pose_json(Eigen::Matrix3d::Identity(), Vector3d::Zero())},
+                               {"points", points_json(plane.corners)},
+                               {"color", color_json(plane.rgb, 0.25)},
+                               {"colors", ordered_json::array()},
+                               {"indices", {0, 1, 2, 0, 2, 3}}});
+  made["lines"].push_back(line_json(plane.corners, kLineLoop, plane.rgb));
+  return made;
+}
+
+ordered_json scene_update(const ExportScene& scene) {
+  constexpr int kLineStrip = 0;
+  ordered_json entities = ordered_json::array();
+  for (const ScenePlane& plane : scene.planes) entities.push_back(plane_entity(scene, plane));
+  for (const SceneCube& cube : scene.cubes) {
+    ordered_json made = entity(scene, fmt::format("cube on plane {}", cube.plane + 1));
+    made["cubes"].push_back(solid_json(
+        pose_json(cube.axes, cube.center), cube.side, color_json(plane_color(cube.plane), 0.5)));
+    entities.push_back(std::move(made));
   }
-
- private:
-  ordered_json entity(const std::string& id) const {
-    ordered_json made{{"timestamp", time_json(scene_.inspection.window->timestamps_ns.front())},
-                      {"frame_id", kWorldFrame},
-                      {"id", id},
-                      {"lifetime", {{"sec", 0}, {"nsec", 0}}},
-                      {"frame_locked", false},
-                      {"metadata", ordered_json::array()}};
-    made["metadata"].push_back({{"key", "world"}, {"value", scene_.world.description()}});
-    for (const char* list :
-         {"arrows", "cubes", "spheres", "cylinders", "lines", "triangles", "texts", "models"})
-      made[list] = ordered_json::array();
-    return made;
-  }
-
-  static ordered_json points_json(std::span<const Vector3d> points) {
-    ordered_json list = ordered_json::array();
-    for (const Vector3d& point : points) list.push_back(vector_json(point));
-    return list;
-  }
-
-  static ordered_json line_json(std::span<const Vector3d> points, int type, std::uint32_t rgb) {
-    return {{"type", type},
-            {"pose", pose_json(Eigen::Matrix3d::Identity(), Vector3d::Zero())},
-            {"thickness", 2},
-            {"scale_invariant", true},
-            {"points", points_json(points)},
-            {"color", color_json(rgb, 1)},
-            {"colors", ordered_json::array()},
-            {"indices", ordered_json::array()}};
-  }
-
-  ordered_json plane_entity(const ScenePlane& plane) const {
-    constexpr int kLineLoop = 1;
-    ordered_json made = entity(plane.title);
-    made["triangles"].push_back({{"pose", pose_json(Eigen::Matrix3d::Identity(), Vector3d::Zero())},
-                                 {"points", points_json(plane.corners)},
-                                 {"color", color_json(plane.rgb, 0.25)},
-                                 {"colors", ordered_json::array()},
-                                 {"indices", {0, 1, 2, 0, 2, 3}}});
-    made["lines"].push_back(line_json(plane.corners, kLineLoop, plane.rgb));
-    return made;
-  }
-
-  ordered_json cube_entity(const SceneCube& cube) const {
-    ordered_json made = entity(fmt::format("cube on plane {}", cube.plane + 1));
-    made["cubes"].push_back({{"pose", pose_json(cube.axes, cube.center)},
-                             {"size", vector_json(Vector3d::Constant(cube.side))},
-                             {"color", color_json(plane_color(cube.plane), 0.5)}});
-    return made;
-  }
-
-  ordered_json points_entity() const {
-    const double diameter = 0.01 * scene_.world.T_world_reference.scale *
-                            scene_.inspection.initialization->plane.distance;
-    ordered_json made = entity("tracks");
-    for (const ScenePoint& point : scene_.points)
-      made["spheres"].push_back({{"pose", pose_json(Eigen::Matrix3d::Identity(), point.position)},
-                                 {"size", vector_json(Vector3d::Constant(diameter))},
-                                 {"color", color_json(plane_color(point.plane), 1)}});
-    return made;
-  }
-
-  ordered_json path_entity() const {
-    constexpr int kLineStrip = 0;
-    std::vector<Vector3d> centers;
-    for (const Pose& camera : scene_.cameras) centers.push_back(camera.p_wc);
-    ordered_json made = entity("camera path");
-    made["lines"].push_back(
-        line_json(centers, kLineStrip, scene_.inspection.settings.options.method.row().rgb));
-    return made;
-  }
-
-  const ExportScene& scene_;
-};
+  const double diameter =
+      0.01 * scene.world.T_world_reference.scale * scene.inspection.initialization->plane.distance;
+  ordered_json points = entity(scene, "tracks");
+  for (const ScenePoint& point : scene.points)
+    points["spheres"].push_back(solid_json(pose_json(Eigen::Matrix3d::Identity(), point.position),
+                                           diameter,
+                                           color_json(plane_color(point.plane), 1)));
+  entities.push_back(std::move(points));
+  std::vector<Vector3d> centers;
+  for (const Pose& camera : scene.cameras) centers.push_back(camera.p_wc);
+  ordered_json path = entity(scene, "camera path");
+  path["lines"].push_back(
+      line_json(centers, kLineStrip, scene.inspection.settings.options.method.row().rgb));
+  entities.push_back(std::move(path));
+  return {{"deletions", ordered_json::array()}, {"entities", entities}};
+}
 
 /// Writes the messages of one frame.
 void write_frame(const ExportScene& scene, const BagWriter& writer, int frame) {
@@ -262,7 +248,7 @@ void write_foxglove(const ExportScene& scene, const fs::path& file, ExportNotes&
   const ordered_json path_message{
       {"timestamp", time_json(first_ns)}, {"frame_id", kWorldFrame}, {"poses", poses}};
   writer.write(path, first_ns, path_message.dump());
-  writer.write(scene_entities, first_ns, Entities(scene).update().dump());
+  writer.write(scene_entities, first_ns, scene_update(scene).dump());
   for (int i = 0; i < std::ssize(scene.cameras); ++i) {
     check_stop();
     write_frame(scene, writer, i);

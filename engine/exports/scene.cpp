@@ -97,10 +97,10 @@ void add_plane(ExportScene& scene, int number, const Plane& plane) {
   }
   if (xs.empty()) return;
   std::array<double, 2> u = middle_range(std::move(xs)), v = middle_range(std::move(ys));
-  for (const auto& corner : cube != nullptr ? cube->corners : std::array<Vector3d, 8>{}) {
-    if (cube == nullptr) break;
-    u = {std::min(u[0], x.dot(corner - foot)), std::max(u[1], x.dot(corner - foot))};
-    v = {std::min(v[0], y.dot(corner - foot)), std::max(v[1], y.dot(corner - foot))};
+  for (int k = 0; cube != nullptr && k < 8; ++k) {
+    const double along_x = x.dot(cube->corners[k] - foot), along_y = y.dot(cube->corners[k] - foot);
+    u = {std::min(u[0], along_x), std::max(u[1], along_x)};
+    v = {std::min(v[0], along_y), std::max(v[1], along_y)};
   }
   const double margin = kMargin * std::max(u[1] - u[0], v[1] - v[0]);
   const auto at = [&](double along_x, double along_y) -> Vector3d {
@@ -134,10 +134,6 @@ void add_cubes(ExportScene& scene, double side) {
   }
 }
 
-std::string counted_of(std::size_t count, const char* one, const char* many) {
-  return fmt::format("{} {}", count, count == 1 ? one : many);
-}
-
 }  // namespace
 
 ExportScene export_scene(const Inspection& inspection, const ExportChoices& choices) {
@@ -163,8 +159,7 @@ ExportScene export_scene(const Inspection& inspection, const ExportChoices& choi
     if (other.number != leader) add_plane(scene, other.number, other.plane);
   const std::size_t tracks = inspection.window->track_count();
   if (tracks > scene.points.size())
-    scene.left_out.push_back(counted_of(tracks - scene.points.size(), "track", "tracks") +
-                             " without a point");
+    scene.left_out.push_back(counted(tracks - scene.points.size(), "track") + " without a point");
   if (image.empty()) scene.left_out.emplace_back("colors, because the recording has no images");
   return scene;
 }
