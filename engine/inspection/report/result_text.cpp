@@ -193,22 +193,16 @@ std::string seconds(std::int64_t ns) {
       "{}{}.{:09d}", ns < 0 ? "-" : "", std::abs(ns / kSecond), std::abs(ns % kSecond));
 }
 
-Eigen::Quaterniond quaternion(const Pose& camera) {
-  Eigen::Quaterniond q(camera.R_wc);
-  if (q.w() < 0) q.coeffs() *= -1;
-  return q.normalized();
-}
-
 std::string tum_line(std::int64_t ns, const Pose& camera) {
   return fmt::format("{} {:.9f} {:.9f}\n",
                      seconds(ns),
                      fmt::join(camera.p_wc, " "),
-                     fmt::join(quaternion(camera).coeffs(), " "));
+                     fmt::join(quaternion_xyzw(camera.R_wc), " "));
 }
 
 std::string euroc_line(std::int64_t ns, const Pose& camera) {
   return std::to_string(ns) + cells(camera.p_wc, kDecimals) +
-         quaternion_cells(quaternion(camera), kDecimals) + "\n";
+         quaternion_cells(Eigen::Quaterniond(quaternion_xyzw(camera.R_wc)), kDecimals) + "\n";
 }
 
 std::string kitti_line(std::int64_t /*ns*/, const Pose& camera) {
