@@ -6,6 +6,7 @@
 #include "engine/geometry/camera_resection.h"
 #include "engine/geometry/homography.h"
 #include "engine/geometry/plane.h"
+#include "engine/inspection/studies/studies.h"
 
 #include <algorithm>
 #include <limits>
@@ -125,13 +126,6 @@ LaterFrame locate(const Inspection& inspection,
 
 /// Appends a frame to a window: its inliers agree with the homographies of planes and camera.
 void append_frame(const Inspection& inspection, const LaterFrame& later, Window& window) {
-  const Eigen::Matrix3d K_inverse = window.K.inverse();
-  const auto homography = [&](const Plane& plane) -> Eigen::Matrix3d {
-    const Eigen::Matrix3d R_cw = later.camera.pose.R_wc.transpose();
-    const Vector3d tau = -later.camera.pose.p_wc / plane.distance;
-    return window.K * R_cw * (Eigen::Matrix3d::Identity() - tau * plane.normal.transpose()) *
-           K_inverse;
-  };
   const auto inliers_of = [&](const Eigen::Matrix3d& H, const auto& candidate) {
     std::vector<bool> inlier(window.track_count(), false);
     for (int j = 0; j < window.track_count(); ++j)
@@ -140,7 +134,8 @@ void append_frame(const Inspection& inspection, const LaterFrame& later, Window&
                       window.threshold_px;
     return inlier;
   };
-  const Eigen::Matrix3d H = homography(inspection.initialization->plane);
+  const Eigen::Matrix3d H =
+      homography_of(window, later.camera.pose, inspection.initialization->plane);
   window.timestamps_ns.push_back(later.camera.timestamp_ns);
   window.H_i1.push_back(H);
   window.inlier.push_back(
@@ -148,7 +143,7 @@ void append_frame(const Inspection& inspection, const LaterFrame& later, Window&
   for (int k = 0; k < std::ssize(window.planes); ++k) {
     WindowPlane& plane = window.planes[k];
     const Plane* estimate = estimated_plane(inspection, k);
-    plane.H_i1.push_back(estimate != nullptr ? homography(*estimate)
+    plane.H_i1.push_back(estimate != nullptr ? homography_of(window, later.camera.pose, *estimate)
                                              : Eigen::Matrix3d::Constant(kUnseen).eval());
     plane.inlier.push_back(inliers_of(
         plane.H_i1.back(), [&](int j) { return std::ranges::binary_search(plane.tracks, j); }));

@@ -35,13 +35,6 @@ TrackPlane plane_of_track(const Inspection& inspection, int column) {
   return {&result.plane, leader};
 }
 
-/// Returns H_i1 = K R_ciw (I - tau_i n^T) K^-1, undistorted.
-Eigen::Matrix3d homography_of(const Window& window, const Pose& pose, const Plane& plane) {
-  const Eigen::Vector3d tau = -pose.p_wc / plane.distance;
-  return window.K * pose.R_wc.transpose() *
-         (Eigen::Matrix3d::Identity() - tau * plane.normal.transpose()) * window.K.inverse();
-}
-
 /// Reads the tracks, not the window, which does not have the excluded ones.
 TrackFrame frame_of(const Inspection& inspection, int frame, int column, const TrackPlane& on) {
   const Tracks& tracks = *inspection.tracks;
@@ -170,6 +163,12 @@ std::string loss_of(const Tracks& tracks, int column) {
 }
 
 }  // namespace
+
+Eigen::Matrix3d homography_of(const Window& window, const Pose& pose, const Plane& plane) {
+  const Eigen::Vector3d tau = -pose.p_wc / plane.distance;
+  return window.K * pose.R_wc.transpose() *
+         (Eigen::Matrix3d::Identity() - tau * plane.normal.transpose()) * window.K.inverse();
+}
 
 std::vector<ResidualVector> residual_vectors(const Inspection& inspection, int frame_in_window) {
   const Window& window = *inspection.window;
