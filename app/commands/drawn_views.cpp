@@ -4,7 +4,7 @@
 #include "app/commands/commands.h"
 #include "engine/base/error.h"
 #include "engine/experiment/summary.h"
-#include "engine/inspection/studies/extrapolation.h"
+#include "engine/inspection/studies/studies.h"
 #include "engine/methods/methods.h"
 #include "ui/views/report/report.h"
 #include "ui/views/snapshot.h"

@@ -8,7 +8,6 @@
 #include "engine/exports/exports.h"
 #include "engine/files/output_file.h"
 #include "engine/files/text_file.h"
-#include "engine/inspection/studies/extrapolation.h"
 #include "engine/inspection/studies/studies.h"
 
 #include <algorithm>

@@ -7,7 +7,6 @@
 #include "engine/inspection/inspection.h"
 #include "engine/inspection/live/live_window.h"
 #include "engine/inspection/settings/settings_table.h"
-#include "engine/inspection/studies/extrapolation.h"
 #include "engine/inspection/studies/studies.h"
 #include "engine/recording/bags/messages.h"
 #include "engine/recording/recording.h"

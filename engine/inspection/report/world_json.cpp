@@ -3,7 +3,7 @@
 // The metric scale and the chosen world of `run --json`.
 #include "engine/files/text_file.h"
 #include "engine/inspection/report/report.h"
-#include "engine/inspection/studies/extrapolation.h"
+#include "engine/inspection/studies/studies.h"
 
 #include <Eigen/Geometry>
 

@@ -1,7 +1,5 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/inspection/studies/extrapolation.h"
-
 #include "engine/base/error.h"
 #include "engine/geometry/camera_resection.h"
 #include "engine/geometry/homography.h"
@@ -20,6 +18,7 @@ namespace {
 using Eigen::Matrix2Xd;
 using Eigen::Vector3d;
 
+constexpr int kLeastLocatingPoints = 8;
 constexpr double kUnseen = std::numeric_limits<double>::quiet_NaN();
 
 /// A point of a plane, where the ray of the reference camera meets it.

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "engine/inspection/studies/extrapolation.h"
+#include "engine/inspection/studies/studies.h"
 #include "ui/views/overlay/overlay.h"
 
 namespace gpo {

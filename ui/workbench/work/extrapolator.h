@@ -3,7 +3,7 @@
 #pragma once
 
 #include "engine/base/internal/background_job.h"
-#include "engine/inspection/studies/extrapolation.h"
+#include "engine/inspection/studies/studies.h"
 
 #include <functional>
 

@@ -1,6 +1,5 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/inspection/studies/extrapolation.h"
 
 #include "engine/inspection/report/report.h"
 #include "engine/inspection/studies/studies.h"
