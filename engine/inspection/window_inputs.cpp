@@ -200,13 +200,15 @@ WindowRotations window_rotations(const Recording& recording,
   const auto choose = [&](const Gyroscope* gyroscope) {
     return chosen_rotations(window, {gyroscope, R_wc_true, options.seed}, requested, stop);
   };
+  const auto without_gyroscope = [&](const std::string& why) -> WindowRotations {
+    return {choose(nullptr), std::nullopt, false, "the gyroscope is not used" + why};
+  };
   if (!recording.gyroscope) return {choose(nullptr)};
   const Gyroscope& gyroscope = *recording.gyroscope;
   const bool may_do_without =
       requested == RotationSource::automatic || requested == RotationSource::raw;
   const std::string gap = may_do_without ? why_not_covered_by(gyroscope, window) : "";
-  if (!gap.empty())
-    return {choose(nullptr), std::nullopt, false, "the gyroscope is not used: " + gap};
+  if (!gap.empty()) return without_gyroscope(": " + gap);
   WindowRotations found{choose(&gyroscope)};
   const Rotations& rotations = found.chosen.rotations;
   if (requested != RotationSource::automatic || rotations.R_wc_images.empty()) return found;
@@ -227,11 +229,7 @@ WindowRotations window_rotations(const Recording& recording,
       return found;
     }
   }
-  return {choose(nullptr),
-          std::nullopt,
-          false,
-          fmt::format(
-              "the gyroscope is not used, it does not fit the images: {}; {}", misfit, kAdvice)};
+  return without_gyroscope(fmt::format(", it does not fit the images: {}; {}", misfit, kAdvice));
 }
 
 RecordingFacts facts_for_results(const Recording& recording) {
