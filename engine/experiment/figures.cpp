@@ -123,11 +123,6 @@ std::vector<Cell> common_cells(std::span<const Row> rows, const FigurePlan& plan
   return summarize(on_common_windows(rows_of(rows, plan.configurations)));
 }
 
-/// Returns whether the bound of a configuration is drawn.
-bool has_bound(const std::vector<Cell>& cells, const Configuration& configuration) {
-  return has_points(bound_curve(cells, configuration));
-}
-
 /// Returns whether any window has an error, so that the residuals need not stand in for them.
 bool has_errors(std::span<const Row> rows) {
   return std::ranges::any_of(rows,
@@ -152,7 +147,7 @@ Figure figure_over_length(std::span<const Row> rows, const FigurePlan& plan) {
       .title = fmt::format("{}: median and quartiles over the windows that all of them solved ({})",
                            plan.title,
                            windows_text(cells, plan)),
-      .note = !has_bound(cells, plan.configurations.front())
+      .note = !has_points(bound_curve(cells, plan.configurations.front()))
                   ? ""
                   : fmt::format("Dotted: Cram\u00e9r-Rao bound of the error for the inliers of {}, "
                                 "their noise and known "

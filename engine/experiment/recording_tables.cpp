@@ -165,31 +165,31 @@ RecordingTable recording_table(std::span<const Row> rows, int frames) {
 std::string recordings_markdown(std::span<const Row> rows) {
   std::string text;
   const std::set<int> lengths = lengths_in(rows);
-  const int shown = timed_length({lengths.begin(), lengths.end()});
-  for (const RecordingTable& one : tables_of(rows, {shown}))
-    for (const NumberColumn& column : one.errors) {
-      Table table{.caption = fmt::format("{} with {} frames: median [quartiles] over the windows "
-                                         "of each recording that all methods solved",
-                                         column.title,
-                                         one.frames),
-                  .header = {"recording", "common windows"},
-                  .lines = {}};
-      table.header.insert(table.header.end(), one.methods.begin(), one.methods.end());
-      for (const RecordingLine& line : one.lines) {
-        std::vector<std::string> cells{name_of(line),
-                                       fmt::format("{}/{}", line.common, line.windows)};
-        for (const Cell& cell : line.common_cells) {
-          const Distribution d = distribution_of(cell, column.columns.front());
-          cells.push_back(d.median ? fmt::format("{} [{}, {}]",
-                                                 formatted(*d.median, column),
-                                                 formatted(*d.lower, column),
-                                                 formatted(*d.upper, column))
-                                   : "-");
-        }
-        table.lines.push_back(std::move(cells));
+  const RecordingTable shown =
+      recording_table(rows, timed_length({lengths.begin(), lengths.end()}));
+  for (const NumberColumn& column : shown.errors) {
+    Table table{.caption = fmt::format("{} with {} frames: median [quartiles] over the windows "
+                                       "of each recording that all methods solved",
+                                       column.title,
+                                       shown.frames),
+                .header = {"recording", "common windows"},
+                .lines = {}};
+    table.header.insert(table.header.end(), shown.methods.begin(), shown.methods.end());
+    for (const RecordingLine& line : shown.lines) {
+      std::vector<std::string> cells{name_of(line),
+                                     fmt::format("{}/{}", line.common, line.windows)};
+      for (const Cell& cell : line.common_cells) {
+        const Distribution d = distribution_of(cell, column.columns.front());
+        cells.push_back(d.median ? fmt::format("{} [{}, {}]",
+                                               formatted(*d.median, column),
+                                               formatted(*d.lower, column),
+                                               formatted(*d.upper, column))
+                                 : "-");
       }
-      text += "\n" + to_markdown(table);
+      table.lines.push_back(std::move(cells));
     }
+    text += "\n" + to_markdown(table);
+  }
   return text;
 }
 
@@ -220,7 +220,7 @@ std::string recordings_csv(std::span<const Row> rows) {
     for (const RecordingLine& line : table.lines)
       for (std::size_t i = 0; i < table.methods.size(); ++i) {
         text += fmt::format("{},{},{},{},{},{}",
-                            csv_quoted(line.all ? "*" : line.recording),
+                            csv_quoted(line.recording),
                             table.frames,
                             table.methods[i],
                             line.windows,
@@ -239,27 +239,15 @@ std::string recordings_csv(std::span<const Row> rows) {
 std::string latex_text(const std::string& text) {
   std::string escaped;
   for (const char c : text) {
-    switch (c) {
-      case '\\':
-        escaped += "\\textbackslash{}";
-        break;
-      case '~':
-        escaped += "\\textasciitilde{}";
-        break;
-      case '^':
-        escaped += "\\textasciicircum{}";
-        break;
-      case '&':
-      case '%':
-      case '$':
-      case '#':
-      case '_':
-      case '{':
-      case '}':
-        escaped += '\\';
-        [[fallthrough]];
-      default:
-        escaped += c;
+    if (c == '\\') {
+      escaped += "\\textbackslash{}";
+    } else if (c == '~') {
+      escaped += "\\textasciitilde{}";
+    } else if (c == '^') {
+      escaped += "\\textasciicircum{}";
+    } else {
+      if (std::string_view("&%$#_{}").find(c) != std::string_view::npos) escaped += '\\';
+      escaped += c;
     }
   }
   return escaped;
