@@ -40,7 +40,9 @@ std::vector<std::string> keys_of(const MethodTable& methods) {
   return keys;
 }
 
-[[noreturn]] void refuse(const std::string& message) { throw SettingError("methods", message); }
+[[noreturn]] void refuse_methods(const std::string& message) {
+  throw SettingError("methods", message);
+}
 
 std::vector<Change> preset_changes(Preset preset, const MethodChoice& method) {
   const auto used = [&](Preset of) {
@@ -70,7 +72,7 @@ std::vector<Change> changes_of(const std::string& word,
       if (one.word == word) return {Change{setting->key, one.value}};
       known.emplace_back(one.word);
     }
-  refuse(fmt::format(
+  refuse_methods(fmt::format(
       "'{}': unknown setting '{}', expected one of {}", text, word, fmt::join(known, ", ")));
 }
 
@@ -79,14 +81,14 @@ void check_read(const Configuration& configuration, const std::string& text) {
   for (const Change& change : configuration.changes) {
     const Setting& setting = find_setting(change.setting);
     if (!is_read(setting, configuration.method))
-      refuse(fmt::format(
+      refuse_methods(fmt::format(
           "'{}': {} does not read '{}'", text, configuration.method.key(), change.setting));
     if (value_text(setting.get(used)) != change.value)
-      refuse(fmt::format("'{}': {} does not take '{}' for '{}'",
-                         text,
-                         configuration.method.key(),
-                         change.value,
-                         change.setting));
+      refuse_methods(fmt::format("'{}': {} does not take '{}' for '{}'",
+                                 text,
+                                 configuration.method.key(),
+                                 change.value,
+                                 change.setting));
   }
 }
 
@@ -116,14 +118,14 @@ Configuration parse_configuration(const std::string& text, const MethodTable& me
   const std::vector<std::string> parts = split(text, '+');
   const std::string key = parts.empty() ? "" : parts.front();
   if (!methods.contains(key))
-    refuse(fmt::format(
+    refuse_methods(fmt::format(
         "unknown method '{}', expected all or some of {}", key, fmt::join(keys_of(methods), ", ")));
   const MethodChoice method = methods.find(key);
   Configuration configuration{.method = method};
   for (std::size_t i = 1; i < parts.size(); ++i) {
     for (Change& change : changes_of(parts[i], text, method)) {
       if (configuration.names(change.setting))
-        refuse(fmt::format("'{}' sets '{}' twice", text, change.setting));
+        refuse_methods(fmt::format("'{}' sets '{}' twice", text, change.setting));
       configuration.changes.push_back(std::move(change));
     }
   }

@@ -130,11 +130,9 @@ void add_results(Experiment& experiment) {
       experiment.commands[row.key + "/" + recording.name] = identity.value_or("");
     }
     if (!found && !experiment.recordings.empty())
-      throw InputError(
-          fmt::format("--result {}: found no file for any recording, expected one with {} in place "
-                      "of {{recording}}",
-                      row.result,
-                      experiment.recordings.front().name));
+      refuse("--result " + row.result,
+             "found no file for any recording, expected one with {} in place of {{recording}}",
+             experiment.recordings.front().name);
   }
 }
 
@@ -286,10 +284,10 @@ std::map<std::string, std::string> commands_in(const ordered_json& json) {
 
 Experiment experiment_from_json(const ordered_json& json, const MethodTable& methods) {
   if (json.at("format") != kFormat)
-    throw InputError(
-        fmt::format("key `format`: found {} (another version of the program), expected {}",
-                    json.at("format").dump(),
-                    kFormat));
+    refuse("key `format`",
+           "found {} (another version of the program), expected {}",
+           json.at("format").dump(),
+           kFormat);
   Experiment experiment;
   for (const ordered_json& recording : json.at("recordings"))
     experiment.recordings.push_back({.name = recording.at("name").get<std::string>(),

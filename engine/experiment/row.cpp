@@ -58,7 +58,7 @@ void read_setting_cell(Settings& settings,
   } else if (cell == "true" || cell == "false") {
     setting.set(settings, cell == "true");
   } else {
-    throw SettingError(setting.key, fmt::format("found '{}', expected true or false", cell));
+    refuse_setting(setting.key, "found '{}', expected true or false", cell);
   }
 }
 
@@ -95,7 +95,7 @@ Row row_from(const MethodTable& methods,
     } catch (const SettingError&) {
       throw;  // its message names the column
     } catch (const InputError& error) {
-      throw InputError(fmt::format("{}: {}", name, error.what()));
+      refuse(name, "{}", error.what());
     }
   });
   return row;
@@ -110,11 +110,10 @@ Row row_of_line(const std::vector<std::string>& cells,
     return cells[column - names.begin()];
   });
   if (row.status != "ok" && row.status != "failed")
-    throw InputError(fmt::format("status: found '{}', expected ok or failed", row.status));
+    refuse("status", "found '{}', expected ok or failed", row.status);
   const std::string key = key_of(parse_configuration(row.configuration, methods));
   if (key != row.configuration)
-    throw InputError(
-        fmt::format("configuration: found '{}', expected '{}'", row.configuration, key));
+    refuse("configuration", "found '{}', expected '{}'", row.configuration, key);
   return row;
 }
 
@@ -214,9 +213,7 @@ std::vector<Row> read_results(const fs::path& file, const MethodTable& methods) 
   std::vector<std::string> names;
   std::vector<Row> rows;
   read_quoted_csv(file, [&](int line, const std::vector<std::string>& cells) {
-    const auto fail = [&](const std::string& message) {
-      throw InputError(fmt::format("{}:{}: {}", file.string(), line, message));
-    };
+    const auto fail = [&](const std::string& why) { refuse(place_in(file, line), "{}", why); };
     if (names.empty()) {
       names = cells;
       for (const char* needed : {"recording", "configuration", "start", "frames", "status"})
@@ -236,7 +233,7 @@ std::vector<Row> read_results(const fs::path& file, const MethodTable& methods) 
       fail(error.what());
     }
   });
-  if (rows.empty()) throw InputError(fmt::format("{}: found no rows of results", file.string()));
+  if (rows.empty()) refuse(file, "found no rows of results");
   return rows;
 }
 

@@ -7,6 +7,7 @@
 #include "engine/base/stop.h"
 #include "engine/experiment/recording_tables.h"
 #include "engine/files/output_file.h"
+#include "engine/files/refuse.h"
 #include "engine/files/text_file.h"
 #include "engine/inspection/inspector.h"
 
@@ -277,11 +278,10 @@ std::vector<std::string> begin_experiment(const fs::path& folder, const Experime
     found = differences(earlier, experiment, /*may_add=*/true);
   }
   if (!found.plan.empty())
-    throw InputError(
-        fmt::format("{}: belongs to another experiment ({}); choose another --output, or add to "
-                    "its methods, lengths, starts and recordings",
-                    definition_file(folder).string(),
-                    differ_text(found.plan)));
+    refuse(definition_file(folder),
+           "belongs to another experiment ({}); choose another --output, or add to its methods, "
+           "lengths, starts and recordings",
+           differ_text(found.plan));
   // Written first, because it marks the folder as an experiment's.
   if (fresh || !found.content.empty() || !differences(earlier, experiment).plan.empty())
     write_file(definition_file(folder), json_text(to_json(experiment), 2));
@@ -292,19 +292,15 @@ std::vector<std::string> begin_experiment(const fs::path& folder, const Experime
 Experiment read_experiment(const fs::path& folder, const MethodTable& methods) {
   const fs::path file = definition_file(folder);
   const ordered_json json = read_json(file);
-  const auto fail = [&](const std::string& why) {
-    throw InputError(
-        fmt::format("{}: is not the definition of an experiment ({})", file.string(), why));
-  };
-  if (json.is_discarded()) fail("invalid JSON");
+  constexpr const char* kOther = "is not the definition of an experiment ({})";
+  if (json.is_discarded()) refuse(file, kOther, "invalid JSON");
   try {
     return experiment_from_json(json, methods);
   } catch (const ordered_json::exception& error) {
-    fail(error.what());
+    refuse(file, kOther, error.what());
   } catch (const InputError& error) {
-    throw InputError(fmt::format("{}: {}", file.string(), error.what()));
+    refuse(file, "{}", error.what());
   }
-  return {};
 }
 
 void save_window(const fs::path& folder, const Experiment& experiment, std::span<const Row> rows) {
@@ -360,11 +356,11 @@ std::vector<Row> collect_rows(const Experiment& experiment, std::span<const fs::
         fmt::format("{} from frame {}", experiment.recordings[task.recording].name, task.start));
   }
   if (missing.empty()) return rows;
-  throw SettingError("merge",
-                     fmt::format("{} of {} windows are missing ({}); finish them first",
-                                 missing_count,
-                                 window_count(tasks),
-                                 list_of(missing)));
+  refuse_setting("merge",
+                 "{} of {} windows are missing ({}); finish them first",
+                 missing_count,
+                 window_count(tasks),
+                 list_of(missing));
 }
 
 Experiment merge_experiments(std::span<const fs::path> folders,
@@ -376,11 +372,11 @@ Experiment merge_experiments(std::span<const fs::path> folders,
     std::vector<std::string>& names = found.plan;
     names.insert(names.end(), found.content.begin(), found.content.end());
     if (names.empty()) continue;
-    throw SettingError("merge",
-                       fmt::format("{} and {} belong to different experiments ({})",
-                                   folders.front().string(),
-                                   folder.string(),
-                                   differ_text(names)));
+    refuse_setting("merge",
+                   "{} and {} belong to different experiments ({})",
+                   folders.front().string(),
+                   folder.string(),
+                   differ_text(names));
   }
   const std::vector<Row> rows = collect_rows(experiment, folders);
   begin_experiment(output, experiment);

@@ -73,25 +73,24 @@ std::span<const ExportFormat> export_formats() { return kExportFormats; }
 const ExportFormat& export_format(const std::string& key) {
   for (const ExportFormat& format : kExportFormats)
     if (key == format.key) return format;
-  throw InputError(
-      fmt::format("export format: found '{}', expected one of {}", key, keys_of_formats()));
+  refuse("export format", "found '{}', expected one of {}", key, keys_of_formats());
 }
 
 ExportRequest parse_export(const std::string& text) {
   const std::size_t equal = text.find('=');
   if (equal == std::string::npos || equal + 1 == text.size())
-    throw InputError(fmt::format(
-        "--export: found '{}', expected FORMAT=PATH with a format of {}", text, keys_of_formats()));
+    refuse("--export",
+           "found '{}', expected FORMAT=PATH with a format of {}",
+           text,
+           keys_of_formats());
   const fs::path path = text.substr(equal + 1);
-  if (path == "-")
-    throw InputError(
-        fmt::format("--export: found '{}', expected a file or a folder instead of -", text));
+  if (path == "-") refuse("--export", "found '{}', expected a file or a folder instead of -", text);
   for (const ExportFormat& format : export_formats())
     if (text.find(fmt::format(",{}=", format.key)) != std::string::npos)
-      throw InputError(
-          fmt::format("--export: found '{}', expected one FORMAT=PATH; repeat --export for {}",
-                      text,
-                      format.key));
+      refuse("--export",
+             "found '{}', expected one FORMAT=PATH; repeat --export for {}",
+             text,
+             format.key);
   return {&export_format(text.substr(0, equal)), path};
 }
 

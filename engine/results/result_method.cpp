@@ -4,6 +4,7 @@
 
 #include "engine/base/error.h"
 #include "engine/external_methods/own_method.h"
+#include "engine/files/refuse.h"
 #include "engine/files/text_file.h"
 #include "engine/results/result_cameras.h"
 #include "engine/results/time_offset.h"
@@ -82,8 +83,7 @@ class Reader {
     else if (is_folder(result.poses) && has_points(result.poses))
       points_ = read_result_points(result.poses);
     if (result.shift != TimeShift::none && poses_.by != FoundBy::time)
-      throw InputError(fmt::format(
-          "{}: --result {}: has no times, remove ,offset=", result.poses.string(), result.name));
+      refuse(result.poses, "--result {}: has no times, remove ,offset=", result.name);
   }
 
   Initialization initialize(const Window& window,
@@ -304,9 +304,8 @@ class Readers {
   std::shared_ptr<Reader> find(const std::string& recording) {
     const bool pattern = is_pattern(result_);
     if (pattern && recording.empty())
-      throw InputError(fmt::format(
-          "--result {}: {{recording}} stands for the name of a recording, but this one has none",
-          result_.name));
+      refuse("--result " + result_.name,
+             "{{recording}} stands for the name of a recording, but this one has none");
     const std::lock_guard lock(mutex_);
     std::shared_ptr<Reader>& reader = readers_[pattern ? recording : ""];
     if (!reader) reader = std::make_shared<Reader>(in_recording(result_, recording), log_);
@@ -333,8 +332,7 @@ void read_shift(const std::string& value, ProgramResult& result) {
   constexpr double kMost_s = 1e6;
   const auto number = value == "auto" ? std::optional(0.0) : parse_number(value);
   if (!number || !(std::abs(*number) <= kMost_s))
-    throw InputError(
-        fmt::format("--result: 'offset={}', expected auto or seconds, e.g. offset=0.02", value));
+    refuse("--result", "'offset={}', expected auto or seconds, e.g. offset=0.02", value);
   result.shift = value == "auto" ? TimeShift::estimated : TimeShift::given;
   result.shift_s = *number;
 }
@@ -359,11 +357,10 @@ ProgramResult parse_program_result(const std::string& text) {
     } else if (result.points.empty()) {
       result.points = part;
     } else {
-      throw InputError(fmt::format("--result: '{}', expected {}", text, kExpected));
+      refuse("--result", "'{}', expected {}", text, kExpected);
     }
   }
-  if (result.poses.empty())
-    throw InputError(fmt::format("--result: '{}' names no file, expected {}", text, kExpected));
+  if (result.poses.empty()) refuse("--result", "'{}' names no file, expected {}", text, kExpected);
   return result;
 }
 
