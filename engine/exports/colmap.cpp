@@ -87,15 +87,22 @@ ColmapCamera colmap_camera(const Camera& camera) {
   }
   if (camera.fx == camera.fy)
     return {"SIMPLE_PINHOLE", 0, {camera.fx, center[0], center[1]}, false};
-  ColmapCamera made = with("PINHOLE", 1, 1, {});
-  made.distorted = false;
-  return made;
+  return {"PINHOLE", 1, {camera.fx, camera.fy, center[0], center[1]}, false};
 }
 
 /// Tracks may have any number as an id, COLMAP's points have none below zero.
 std::int64_t point_id(const Tracks& tracks, int column) {
   const bool usable = std::ranges::all_of(tracks.ids, [](std::int64_t id) { return id >= 0; });
   return usable ? tracks.ids[column] : column;
+}
+
+/// Returns COLMAP's pixel of an undistorted one; nullopt if the lens does not show it.
+std::optional<Vector2d> colmap_pixel(const ExportScene& scene,
+                                     const ColmapCamera& camera,
+                                     Vector2d pixel) {
+  if (camera.distorted) pixel = distort(scene.inspection.recording->camera, pixel);
+  if (!pixel.allFinite()) return std::nullopt;
+  return Vector2d(pixel.array() + kHalfPixel);
 }
 
 /// Adds the observations of a frame; returns the index of each observed column.
@@ -106,25 +113,13 @@ std::map<int, int> add_pixels(const ExportScene& scene,
   const Window& window = *scene.inspection.window;
   std::map<int, int> index_of;
   for (int j = 0; j < window.track_count(); ++j) {
-    Vector2d pixel = window.points_px[frame].col(j);
-    if (camera.distorted) pixel = distort(scene.inspection.recording->camera, pixel);
-    if (!pixel.allFinite()) continue;
+    const auto pixel = colmap_pixel(scene, camera, window.points_px[frame].col(j));
+    if (!pixel) continue;
     index_of.emplace(j, static_cast<int>(image.pixels.size()));
-    image.pixels.emplace_back(pixel.array() + kHalfPixel);
+    image.pixels.push_back(*pixel);
     image.points.push_back(kNoPoint);
   }
   return index_of;
-}
-
-std::optional<Vector2d> predicted_pixel(const ExportScene& scene,
-                                        const ColmapCamera& camera,
-                                        int frame,
-                                        const Vector3d& point) {
-  const Vector3d seen = scene.inspection.window->K * to_camera(scene.cameras[frame], point);
-  Vector2d pixel = seen.hnormalized();
-  if (camera.distorted) pixel = distort(scene.inspection.recording->camera, pixel);
-  if (!pixel.allFinite()) return std::nullopt;
-  return Vector2d(pixel.array() + kHalfPixel);
 }
 
 ColmapModelFiles colmap_model(const ExportScene& scene) {
@@ -144,7 +139,8 @@ ColmapModelFiles colmap_model(const ExportScene& scene) {
     double errors_px = 0;
     for (const int i : point.frames) {
       const auto index = index_of[i].find(point.track);
-      const auto predicted = predicted_pixel(scene, model.camera, i, point.position);
+      const Vector3d seen = inspection.window->K * to_camera(scene.cameras[i], point.position);
+      const auto predicted = colmap_pixel(scene, model.camera, seen.hnormalized());
       if (index == index_of[i].end() || !predicted) continue;
       errors_px += (model.images[i].pixels[index->second] - *predicted).norm();
       made.track.emplace_back(i, index->second);
