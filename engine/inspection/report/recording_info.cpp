@@ -165,24 +165,21 @@ std::string plane_text(const Plane& plane) {
       "normal {:.6f}, distance {:.6f} m", fmt::join(plane.normal, ", "), plane.distance);
 }
 
-std::string tags_text(const Board& board) {
-  const BoardTags& tags = *board.tags;
-  const double side_mm = board.square_m * 1e3;
-  if (tags.alone)
-    return fmt::format("AprilTag{} of {:g} mm",
-                       *tags.alone == BoardTags::kAnyTag ? "" : fmt::format(" {}", *tags.alone),
-                       side_mm);
-  return fmt::format("AprilGrid, {} x {} tags of {:g} mm, spacing {:g}",
-                     board.columns / 2,
-                     board.rows / 2,
-                     side_mm,
-                     tags.spacing);
-}
-
 std::string board_text(const Board& board) {
-  if (board.tags) return tags_text(board);
-  const std::string counts = fmt::format(
-      "{} x {} inner corners, squares of {:g} mm", board.columns, board.rows, board.square_m * 1e3);
+  const double side_mm = board.square_m * 1e3;
+  if (board.tags && board.tags->alone) {
+    const int id = *board.tags->alone;
+    const std::string number = id == BoardTags::kAnyTag ? "" : fmt::format(" {}", id);
+    return fmt::format("AprilTag{} of {:g} mm", number, side_mm);
+  }
+  if (board.tags)
+    return fmt::format("AprilGrid, {} x {} tags of {:g} mm, spacing {:g}",
+                       board.columns / 2,
+                       board.rows / 2,
+                       side_mm,
+                       board.tags->spacing);
+  const std::string counts =
+      fmt::format("{} x {} inner corners, squares of {:g} mm", board.columns, board.rows, side_mm);
   if (!board.markers) return fmt::format("chessboard, {}", counts);
   return fmt::format("ChArUco, {}, markers of {:g} mm from {}",
                      counts,
@@ -190,22 +187,18 @@ std::string board_text(const Board& board) {
                      board.markers->dictionary);
 }
 
-nlohmann::json tags_json(const Board& board) {
-  const BoardTags& tags = *board.tags;
-  if (tags.alone) {
+nlohmann::json to_json(const Board& board) {
+  if (board.tags && board.tags->alone) {
     nlohmann::json json = {{"pattern", "apriltag"}, {"tag_m", board.square_m}};
-    if (*tags.alone != BoardTags::kAnyTag) json["id"] = *tags.alone;
+    if (*board.tags->alone != BoardTags::kAnyTag) json["id"] = *board.tags->alone;
     return json;
   }
-  return {{"pattern", "aprilgrid"},
-          {"tag_columns", board.columns / 2},
-          {"tag_rows", board.rows / 2},
-          {"tag_m", board.square_m},
-          {"tag_spacing", tags.spacing}};
-}
-
-nlohmann::json to_json(const Board& board) {
-  if (board.tags) return tags_json(board);
+  if (board.tags)
+    return {{"pattern", "aprilgrid"},
+            {"tag_columns", board.columns / 2},
+            {"tag_rows", board.rows / 2},
+            {"tag_m", board.square_m},
+            {"tag_spacing", board.tags->spacing}};
   nlohmann::json json = {{"pattern", board.markers ? "charuco" : "chessboard"},
                          {"columns", board.columns},
                          {"rows", board.rows},
