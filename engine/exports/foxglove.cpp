@@ -5,6 +5,7 @@
 #include "engine/base/stop.h"
 #include "engine/exports/scene.h"
 #include "engine/files/image_codec.h"
+#include "engine/files/text_file.h"
 #include "engine/inspection/studies/studies.h"
 #include "engine/recording/bags/messages.h"
 #include "engine/recording/images/images.h"
@@ -36,22 +37,6 @@ constexpr std::array<FoxgloveRow, 6> kFoxgloveTopics{{{"/camera/image", "Compres
                                                       {"/path", "PosesInFrame"},
                                                       {"/camera/tracks", "ImageAnnotations"},
                                                       {"/scene", "SceneUpdate"}}};
-
-std::string to_base64(std::string_view bytes) {
-  constexpr std::string_view kDigits =
-      "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-  std::string text;
-  text.reserve((bytes.size() + 2) / 3 * 4);
-  for (std::size_t i = 0; i < bytes.size(); i += 3) {
-    std::uint32_t bits = 0;
-    const std::size_t count = std::min<std::size_t>(3, bytes.size() - i);
-    for (std::size_t k = 0; k < 3; ++k)
-      bits = bits << 8 | (k < count ? static_cast<unsigned char>(bytes[i + k]) : 0U);
-    for (std::size_t k = 0; k < 4; ++k)
-      text += k <= count ? kDigits[bits >> (18 - 6 * k) & 63] : '=';
-  }
-  return text;
-}
 
 ordered_json time_json(std::int64_t ns) {
   constexpr std::int64_t kSecond_ns = 1'000'000'000;

@@ -88,6 +88,8 @@ nlohmann::ordered_json parse_json(std::string_view text);
 
 nlohmann::ordered_json read_json(const fs::path& file);
 
+std::string to_base64(std::string_view bytes);
+
 /// Returns the 64-bit FNV-1a hash for names of cache files, the same on every machine.
 constexpr std::uint64_t fnv1a(std::string_view bytes) {
   std::uint64_t value = 14695981039346656037U;

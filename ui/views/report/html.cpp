@@ -4,29 +4,11 @@
 
 #include "engine/files/text_file.h"
 
-#include <algorithm>
-
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 namespace gpo {
 namespace {
-
-std::string base64(std::string_view bytes) {
-  constexpr std::string_view kDigits =
-      "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-  std::string text;
-  text.reserve((bytes.size() + 2) / 3 * 4);
-  for (std::size_t i = 0; i < bytes.size(); i += 3) {
-    const std::size_t count = std::min<std::size_t>(3, bytes.size() - i);
-    std::uint32_t three = 0;
-    for (std::size_t k = 0; k < 3; ++k)
-      three = three << 8 | (k < count ? static_cast<unsigned char>(bytes[i + k]) : 0);
-    for (std::size_t k = 0; k < 4; ++k)
-      text += k <= count ? kDigits[three >> (18 - 6 * k) & 63] : '=';
-  }
-  return text;
-}
 
 std::string html_class(const std::string& style) {
   return style.empty() ? "" : fmt::format(" class=\"{}\"", style);
@@ -66,7 +48,7 @@ std::string html_text(const std::string& text) {
 }
 
 std::string data_uri(std::string_view type, std::string_view bytes) {
-  return fmt::format("data:{};base64,{}", type, base64(bytes));
+  return fmt::format("data:{};base64,{}", type, to_base64(bytes));
 }
 
 std::string script_json(const nlohmann::ordered_json& json) {
