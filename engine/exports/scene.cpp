@@ -3,6 +3,7 @@
 #include "engine/exports/scene.h"
 
 #include "engine/base/error.h"
+#include "engine/geometry/statistics.h"
 #include "engine/inspection/studies/studies.h"
 
 #include <algorithm>
@@ -19,13 +20,6 @@ namespace {
 using Eigen::Matrix3d, Eigen::Vector2d, Eigen::Vector3d;
 
 constexpr double kMargin = 0.1;  // around the points of a plane, of their extent
-
-/// The middle of the values without the outermost 4 % on each side.
-std::array<double, 2> middle_range(std::vector<double> values) {
-  std::ranges::sort(values);
-  const std::size_t cut = values.size() / 25;
-  return {values[cut], values[values.size() - 1 - cut]};
-}
 
 bool is_inlier_of(const Window& window, int plane, int frame, int track) {
   return plane == window.leader ? window.inlier[frame][track]

@@ -27,6 +27,12 @@ std::optional<double> parabola_minimum(double before, double middle, double afte
   return 0.5 * (before - after) / bend;
 }
 
+std::array<double, 2> middle_range(std::vector<double> values) {
+  std::ranges::sort(values);
+  const std::size_t cut = values.size() / 25;
+  return {values[cut], values[values.size() - 1 - cut]};
+}
+
 double sum_of_squares(std::span<const double> values) {
   return std::inner_product(values.begin(), values.end(), values.begin(), 0.0);
 }

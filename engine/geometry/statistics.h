@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <array>
 #include <optional>
 #include <span>
 #include <vector>
@@ -16,6 +17,9 @@ double median(std::vector<double> values);
 
 /// Returns a quantile of at least one ascending value, linearly interpolated; `share` from 0 to 1.
 double quantile(std::span<const double> ascending, double share);
+
+/// Returns the least and the largest of the values without 4 % at each end; at least one value.
+std::array<double, 2> middle_range(std::vector<double> values);
 
 double sum_of_squares(std::span<const double> values);
 

@@ -1,5 +1,6 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
+#include "engine/geometry/statistics.h"
 #include "engine/inspection/studies/studies.h"
 #include "engine/methods/plane/normal_landscape.h"
 #include "engine/truth/truth.h"
@@ -39,12 +40,6 @@ void add_frusta(const Inspection& inspection, Line& extent) {
   if (!T_est_true) return;
   for (int i = 0; i < std::ssize(inspection.truth->cameras); ++i)
     if (const auto pose = true_camera(inspection, *T_est_true, i)) add(*pose);
-}
-
-std::array<double, 2> usual_range(std::vector<double> values) {
-  std::ranges::sort(values);
-  const std::size_t cut = values.size() / 25;
-  return {values[cut], values[values.size() - 1 - cut]};
 }
 
 /// Returns the semi-axes of x' C^-1 x = chi_square as columns, the longest last.
@@ -210,7 +205,7 @@ PlaneGrid plane_grid(const Inspection& inspection, double cube_side) {
   };
   for (const MapPoint& point : inspection.initialization->points) add(point.position);
   if (xs.empty()) add(grid.origin);
-  std::array<double, 2> x = usual_range(xs), y = usual_range(ys);
+  std::array<double, 2> x = middle_range(xs), y = middle_range(ys);
   if (cube)
     for (const Vector3d& corner : cube_corners(*cube, cube_side)) {
       const double cx = grid.x.dot(corner - grid.origin), cy = grid.y.dot(corner - grid.origin);
