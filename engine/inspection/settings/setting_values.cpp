@@ -119,17 +119,18 @@ std::vector<Eigen::Vector2d> Mask::outline() const {
   return {a, {b.x(), a.y()}, b, {a.x(), b.y()}};
 }
 
-bool Mask::contains(const Eigen::Vector2d& raw_px) const {
-  const std::vector<Eigen::Vector2d> corners = outline();
+bool is_inside(std::span<const Eigen::Vector2d> polygon, const Eigen::Vector2d& point) {
   bool inside = false;
-  for (std::size_t k = 0; k < corners.size(); ++k) {
-    const Eigen::Vector2d &a = corners[k], &b = corners[(k + 1) % corners.size()];
-    if ((a.y() > raw_px.y()) == (b.y() > raw_px.y())) continue;
-    const double x = a.x() + (raw_px.y() - a.y()) / (b.y() - a.y()) * (b.x() - a.x());
-    if (raw_px.x() < x) inside = !inside;
+  for (std::size_t k = 0; k < polygon.size(); ++k) {
+    const Eigen::Vector2d &a = polygon[k], &b = polygon[(k + 1) % polygon.size()];
+    if ((a.y() > point.y()) == (b.y() > point.y())) continue;
+    const double x = a.x() + (point.y() - a.y()) / (b.y() - a.y()) * (b.x() - a.x());
+    if (point.x() < x) inside = !inside;
   }
   return inside;
 }
+
+bool Mask::contains(const Eigen::Vector2d& raw_px) const { return is_inside(outline(), raw_px); }
 
 double Mask::area_px2() const {
   const std::vector<Eigen::Vector2d> corners = outline();

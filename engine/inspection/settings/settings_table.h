@@ -38,6 +38,9 @@ enum class MaskKind { leave_out, plane };
 template <>
 struct ChoiceKeys<MaskKind> : NamedKeys<"mask", "not", "plane"> {};
 
+/// Returns whether a polygon contains a point.
+bool is_inside(std::span<const Eigen::Vector2d> polygon, const Eigen::Vector2d& point);
+
 /// An area of the reference frame, in pixels of the recorded, distorted image. A track belongs to
 /// it by its place in that frame.
 struct Mask {

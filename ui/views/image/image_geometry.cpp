@@ -259,17 +259,6 @@ std::vector<CubeAnchor> cubes_far_to_near(const Inspection& inspection, int fram
   return cubes;
 }
 
-bool is_inside(const Outline& polygon, const Vector2d& pixel) {
-  bool inside = false;
-  for (std::size_t i = 0; i < polygon.size(); ++i) {
-    const Vector2d &a = polygon[i], &b = polygon[(i + 1) % polygon.size()];
-    if ((a.y() > pixel.y()) == (b.y() > pixel.y())) continue;
-    const double x = a.x() + (pixel.y() - a.y()) / (b.y() - a.y()) * (b.x() - a.x());
-    inside ^= pixel.x() < x;
-  }
-  return inside;
-}
-
 std::optional<CubeAnchor> cube_at(const Inspection& inspection,
                                   int frame,
                                   CubeSize size,

@@ -58,9 +58,6 @@ CubeImage cube_on(const Inspection& inspection, int frame, const CubeAnchor& anc
 /// Returns all cubes, the nearest to the frame's camera last. The initialization is ok.
 std::vector<CubeAnchor> cubes_far_to_near(const Inspection& inspection, int frame);
 
-/// Returns whether a polygon contains a pixel.
-bool is_inside(const Outline& polygon, const Vector2d& pixel);
-
 /// Returns the nearest cube at a pixel; nullopt if there is none. The initialization is ok.
 std::optional<CubeAnchor> cube_at(const Inspection& inspection,
                                   int frame,
