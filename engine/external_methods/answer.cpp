@@ -213,17 +213,6 @@ std::optional<Plane> plane_of_inliers(const Window& window, const std::vector<Ma
   return fit_plane(positions.leftCols(count));
 }
 
-std::vector<MapPoint> on_plane(const Window& window, const Plane& plane) {
-  const Eigen::Matrix3d K_inverse = window.K.inverse();
-  std::vector<MapPoint> points;
-  for (const int j : window.inlier_tracks(0)) {
-    const auto point =
-        intersect(plane, Pose{}, K_inverse * window.points_px[0].col(j).homogeneous());
-    if (point) points.push_back({j, *point});
-  }
-  return points;
-}
-
 /// Scales the plane to distance 1. Returns false if numbers overflow.
 bool rescale(Answer& answer) {
   const double unit = answer.plane->distance;
@@ -294,7 +283,8 @@ Initialization initialization_of(const Window& window, const Answer& given) {
   }
   if (!rescale(answer))
     return failed("the answer's numbers overflow when scaled to the distance of its plane");
-  const auto points = over_plane ? on_plane(window, *answer.plane) : answer.points;
+  const std::array reference{Pose{}};
+  const auto points = over_plane ? lift_to_plane(window, *answer.plane, reference) : answer.points;
   Initialization result;
   result.plane = *answer.plane;
   result.planes = planes_of(window, answer);
@@ -311,26 +301,6 @@ Initialization initialization_of(const Window& window, const Answer& given) {
   std::erase_if(errors_px, [](double error) { return !std::isfinite(error); });
   result.rms_px = root_mean_square(errors_px);
   return trusted(window, std::move(result));
-}
-
-std::vector<MapPoint> triangulated(const Window& window,
-                                   std::span<const std::optional<Pose>> given) {
-  const Eigen::Matrix3d K_inverse = window.K.inverse();
-  std::vector<MapPoint> points;
-  for (int j = 0; j < window.track_count(); ++j) {
-    if (!window.inlier[0][j]) continue;
-    std::vector<Pose> cameras;
-    Eigen::Matrix3Xd rays(3, window.frame_count());
-    for (int i = 0; i < window.frame_count(); ++i) {
-      if (!given[i] || !window.inlier[i][j]) continue;
-      rays.col(std::ssize(cameras)) = K_inverse * window.points_px[i].col(j).homogeneous();
-      cameras.push_back(*given[i]);
-    }
-    if (cameras.size() < 2) continue;
-    const auto point = triangulate(cameras, rays.leftCols(std::ssize(cameras)));
-    if (point) points.push_back({j, *point});
-  }
-  return points;
 }
 
 std::optional<Pose> resected(const Window& window, const std::vector<MapPoint>& points, int frame) {

@@ -96,10 +96,6 @@ Answer read_answer(std::string_view line, const ExpectedAnswer& expected);
 /// reason if that is impossible or if the result does not fit the window's tracks.
 Initialization initialization_of(const Window& window, const Answer& answer);
 
-/// Triangulates the inlier tracks that at least two of the given cameras (one entry per frame) see.
-std::vector<MapPoint> triangulated(const Window& window,
-                                   std::span<const std::optional<Pose>> given);
-
 /// Returns the camera of a frame from the points that it sees; nullopt if these are too few.
 std::optional<Pose> resected(const Window& window, const std::vector<MapPoint>& points, int frame);
 

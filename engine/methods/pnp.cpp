@@ -41,21 +41,9 @@ struct Reconstruction {
 
 /// Triangulates all inlier tracks from the frames with a pose.
 void triangulate_tracks(const Window& window, Reconstruction& scene) {
-  const Eigen::Matrix3d K_inverse = window.K.inverse();
-  for (int j = 0; j < window.track_count(); ++j) {
-    scene.points[j].reset();
-    if (!window.inlier[0][j]) continue;
-    std::vector<Pose> cameras;
-    Eigen::Matrix3Xd rays(3, window.frame_count());
-    for (int i = 0; i < window.frame_count(); ++i) {
-      if (!scene.cameras[i] || !window.inlier[i][j]) continue;
-      rays.col(static_cast<int>(cameras.size())) =
-          K_inverse * window.points_px[i].col(j).homogeneous();
-      cameras.push_back(*scene.cameras[i]);
-    }
-    if (cameras.size() < 2) continue;
-    scene.points[j] = triangulate(cameras, rays.leftCols(static_cast<int>(cameras.size())));
-  }
+  std::ranges::fill(scene.points, std::nullopt);
+  for (const MapPoint& point : triangulated(window, scene.cameras))
+    scene.points[point.track] = point.position;
 }
 
 /// Returns the motion halfway between two decompositions.

@@ -4,6 +4,7 @@
 
 #include "engine/base/error.h"
 #include "engine/geometry/camera.h"
+#include "engine/geometry/camera_resection.h"
 #include "engine/geometry/plane.h"
 #include "engine/geometry/statistics.h"
 #include "engine/geometry/transfer.h"
@@ -182,6 +183,26 @@ std::vector<double> reprojection_errors_px(const Window& window,
     }
   }
   return errors;
+}
+
+std::vector<MapPoint> triangulated(const Window& window,
+                                   std::span<const std::optional<Pose>> given) {
+  const Eigen::Matrix3d K_inverse = window.K.inverse();
+  std::vector<MapPoint> points;
+  for (int j = 0; j < window.track_count(); ++j) {
+    if (!window.inlier[0][j]) continue;
+    std::vector<Pose> cameras;
+    Eigen::Matrix3Xd rays(3, window.frame_count());
+    for (int i = 0; i < window.frame_count(); ++i) {
+      if (!given[i] || !window.inlier[i][j]) continue;
+      rays.col(std::ssize(cameras)) = K_inverse * window.points_px[i].col(j).homogeneous();
+      cameras.push_back(*given[i]);
+    }
+    if (cameras.size() < 2) continue;
+    const auto point = triangulate(cameras, rays.leftCols(std::ssize(cameras)));
+    if (point) points.push_back({j, *point});
+  }
+  return points;
 }
 
 void set_fit_errors(const Window& window, Initialization& result) {

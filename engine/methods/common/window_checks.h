@@ -39,6 +39,10 @@ std::vector<double> reprojection_errors_px(const Window& window,
                                            std::span<const Pose> cameras,
                                            std::span<const MapPoint> points);
 
+/// Triangulates the inlier tracks that at least two of the given cameras (one entry per frame) see.
+std::vector<MapPoint> triangulated(const Window& window,
+                                   std::span<const std::optional<Pose>> given);
+
 /// Sets `transfer_rms_px` and `reprojection_rms_px` of a result. Points behind a camera do not
 /// count.
 void set_fit_errors(const Window& window, Initialization& result);

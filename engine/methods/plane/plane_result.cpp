@@ -21,7 +21,7 @@ std::vector<MapPoint> lift_to_plane(const Window& window,
   for (const int j : window.inlier_tracks(0)) {
     Eigen::Vector3d sum = Eigen::Vector3d::Zero();
     int lifted = 0;
-    for (int i = 0; i < window.frame_count(); ++i) {
+    for (int i = 0; i < std::ssize(cameras); ++i) {
       if (!window.inlier[i][j]) continue;
       const Eigen::Vector3d ray_c = K_inverse * window.points_px[i].col(j).homogeneous();
       if (const auto point = intersect(plane, cameras[i], ray_c)) {

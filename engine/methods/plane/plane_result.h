@@ -12,7 +12,7 @@ namespace gpo {
 
 /// Returns map points without triangulation (engine/method.md, eq. 12): each inlier observation is
 /// intersected with the plane, and a point is the mean over its frames. Inlier tracks only; in the
-/// world of the poses.
+/// world of the poses. `cameras`: those of the first frames, which alone count.
 std::vector<MapPoint> lift_to_plane(const Window& window,
                                     const Plane& plane,
                                     std::span<const Pose> cameras);
