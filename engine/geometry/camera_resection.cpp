@@ -214,6 +214,16 @@ std::optional<Resection> resect_camera(const Eigen::Matrix3Xd& points_w,
   return refine_pose(*start, points_w, pixels, K);
 }
 
+std::optional<Resection> follow_camera(const Pose& before,
+                                       const Eigen::Matrix3Xd& points_w,
+                                       const Eigen::Matrix2Xd& pixels,
+                                       const Matrix3d& K) {
+  const auto followed = refine_pose(before, points_w, pixels, K);
+  const auto anew = resect_camera(points_w, pixels, K);
+  if (!followed || !anew) return followed ? followed : anew;
+  return anew->median_px < followed->median_px ? anew : followed;
+}
+
 std::optional<Vector3d> triangulate(std::span<const Pose> cameras, const Eigen::Matrix3Xd& rays) {
   auto point = nearest_to_rays(cameras, rays);
   for (int step = 0; point && step < 5; ++step) {

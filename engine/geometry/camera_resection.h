@@ -35,6 +35,12 @@ std::optional<Resection> resect_camera(const Eigen::Matrix3Xd& points_w,
                                        const Eigen::Matrix2Xd& pixels,
                                        const Eigen::Matrix3d& K);
 
+/// Returns the pose with the smaller error: `before` refined, or another one without a start.
+std::optional<Resection> follow_camera(const Pose& before,
+                                       const Eigen::Matrix3Xd& points_w,
+                                       const Eigen::Matrix2Xd& pixels,
+                                       const Eigen::Matrix3d& K);
+
 /// Triangulates a point by minimizing sum |x_i - pi(R_cwi (X - p_wci))|^2, Gauss-Newton from the
 /// point nearest to all rays. `rays` are K^-1 p_i with third coordinate 1, 3 x n, one per camera.
 /// nullopt if the rays do not determine the point or it is behind a camera.

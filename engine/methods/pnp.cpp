@@ -204,11 +204,8 @@ std::optional<Pose> resect_frame(const Window& window, const Reconstruction& sce
   for (std::size_t k = 0; k < seen.size(); ++k)
     points.col(static_cast<int>(k)) = *scene.points[seen[k]];
   const Eigen::Matrix2Xd pixels = window.points_px[frame](Eigen::all, seen);
-  const auto anew = resect_camera(points, pixels, window.K);
-  const auto followed = refine_pose(*scene.cameras[frame - 1], points, pixels, window.K);
-  if (!anew && !followed) return std::nullopt;
-  if (!anew || !followed) return anew ? anew->pose : followed->pose;
-  return anew->median_px < followed->median_px ? anew->pose : followed->pose;
+  const auto found = follow_camera(*scene.cameras[frame - 1], points, pixels, window.K);
+  return found ? std::optional(found->pose) : std::nullopt;
 }
 
 /// Adds all other frames in order. Returns why it failed; nullopt on success or if stopped.

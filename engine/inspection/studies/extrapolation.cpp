@@ -21,17 +21,11 @@ using Eigen::Vector3d;
 constexpr int kLeastLocatingPoints = 8;
 constexpr double kUnseen = std::numeric_limits<double>::quiet_NaN();
 
-/// A point of a plane, where the ray of the reference camera meets it.
-struct LocatingPoint {
-  int track;  ///< column
-  Vector3d position;
-};
-
 /// Returns the points of all planes with an estimate, from the positions in the reference frame.
-std::vector<LocatingPoint> points_of_planes(const Inspection& inspection) {
+std::vector<MapPoint> points_of_planes(const Inspection& inspection) {
   const Window& window = *inspection.window;
   const Eigen::Matrix3d K_inverse = window.K.inverse();
-  std::vector<LocatingPoint> points;
+  std::vector<MapPoint> points;
   for (int j = 0; j < window.track_count(); ++j) {
     if (!window.points_px[0].col(j).allFinite()) continue;
     const auto number =
@@ -73,20 +67,9 @@ struct LaterFrame {
   Matrix2Xd points_px;
 };
 
-/// Returns the pose that fits better: the one before, refined, or another one without a start.
-std::optional<Resection> located(const Pose& before,
-                                 const Eigen::Matrix3Xd& points_w,
-                                 const Matrix2Xd& pixels,
-                                 const Eigen::Matrix3d& K) {
-  const auto followed = refine_pose(before, points_w, pixels, K);
-  const auto anew = resect_camera(points_w, pixels, K);
-  if (!followed || !anew) return followed ? followed : anew;
-  return anew->median_px < followed->median_px ? anew : followed;
-}
-
 /// Locates a frame's camera. Throws InputError with the reason if it cannot be located.
 LaterFrame locate(const Inspection& inspection,
-                  const std::vector<LocatingPoint>& points,
+                  const std::vector<MapPoint>& points,
                   const Pose& before,
                   Matrix2Xd points_px) {
   const Eigen::Matrix3d& K = inspection.window->K;
@@ -104,7 +87,7 @@ LaterFrame locate(const Inspection& inspection,
     points_w.col(k) = points[seen[k]].position;
     pixels.col(k) = points_px.col(points[seen[k]].track);
   }
-  const auto found = located(before, points_w, pixels, K);
+  const auto found = follow_camera(before, points_w, pixels, K);
   if (!found) throw InputError("no camera has the points of the planes in front of it");
   const double threshold_px = inspection.window->threshold_px;
   int agreeing = 0;
@@ -194,7 +177,7 @@ std::shared_ptr<const Extrapolation> extrapolate(
   if (!inspection->initialization->ok) throw InputError("the window is not initialized");
   const auto tracks = longer_tracks(*inspection, last - window.start, stop, progress);
   if (!tracks) return nullptr;
-  const std::vector<LocatingPoint> points = points_of_planes(*inspection);
+  const std::vector<MapPoint> points = points_of_planes(*inspection);
   std::vector<LaterFrame> later;
   for (int i = known; i < last - window.start && found.end.empty(); ++i) {
     if (stop.stop_requested()) return nullptr;
