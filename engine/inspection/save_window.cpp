@@ -49,19 +49,6 @@ std::shared_ptr<const FrameCache> cache_of(const std::vector<cv::Mat>& images) {
   });
 }
 
-std::vector<TrackObservation> observations_of(std::span<const Frame> frames) {
-  std::vector<TrackObservation> all;
-  for (std::size_t i = 0; i < frames.size(); ++i) {
-    const Frame& frame = frames[i];
-    for (int k = 0; k < std::ssize(frame.ids); ++k)
-      all.push_back({.frame = static_cast<int>(i),
-                     .track = frame.ids[k],
-                     .raw_px = frame.raw_px.col(k),
-                     .sigma_px = frame.sigma_px.size() > 0 ? frame.sigma_px[k] : 0});
-  }
-  return all;
-}
-
 }  // namespace
 
 void save_window(const std::filesystem::path& folder,

@@ -61,18 +61,6 @@ void check(const Camera& camera,
     check_frame(frames[i], static_cast<int>(i), i > 0 ? &frames[i - 1] : nullptr, offset_ns);
 }
 
-Tracks tracks_of(std::span<const Frame> frames) {
-  std::vector<TrackObservation> observations;
-  for (std::size_t i = 0; i < frames.size(); ++i) {
-    for (int k = 0; k < std::ssize(frames[i].ids); ++k)
-      observations.push_back({.frame = static_cast<int>(i),
-                              .track = frames[i].ids[k],
-                              .raw_px = frames[i].raw_px.col(k),
-                              .sigma_px = frames[i].sigma_px.size() ? frames[i].sigma_px[k] : 0});
-  }
-  return select_tracks(observations, 0, static_cast<int>(frames.size()));
-}
-
 std::vector<Eigen::Matrix3d> given_rotations(std::span<const Frame> frames) {
   std::vector<Eigen::Matrix3d> R_wc;
   for (const Frame& frame : frames)
@@ -122,6 +110,18 @@ void check_options(const InitializeOptions& options) {
        {"p_gyro_camera_m", lever_m.x(), kFinite},
        {"p_gyro_camera_m", lever_m.y(), kFinite},
        {"p_gyro_camera_m", lever_m.z(), kFinite}}));
+}
+
+std::vector<TrackObservation> observations_of(std::span<const Frame> frames) {
+  std::vector<TrackObservation> observations;
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    for (int k = 0; k < std::ssize(frames[i].ids); ++k)
+      observations.push_back({.frame = static_cast<int>(i),
+                              .track = frames[i].ids[k],
+                              .raw_px = frames[i].raw_px.col(k),
+                              .sigma_px = frames[i].sigma_px.size() ? frames[i].sigma_px[k] : 0});
+  }
+  return observations;
 }
 
 void check_frame(const Frame& frame, int number, const Frame* before, std::int64_t time_offset_ns) {
@@ -261,7 +261,7 @@ WindowResult initialize(const Camera& camera,
 
   std::vector<std::int64_t> timestamps_ns;
   for (const Frame& frame : frames) timestamps_ns.push_back(frame.timestamp_ns);
-  Tracks tracks = tracks_of(frames);
+  Tracks tracks = select_tracks(observations_of(frames), 0, static_cast<int>(frames.size()));
   Window window = window_of(tracks, camera, timestamps_ns, options);
   const ChosenRotations chosen =
       chosen_rotations(window, {gyro, R_wc, options.seed}, requested, stop);

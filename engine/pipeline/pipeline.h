@@ -41,6 +41,9 @@ void check_sample(std::int64_t timestamp_ns,
 /// Checks order and counts of the samples; they need not cover anything yet.
 void check_gyroscope(const Gyroscope& gyroscope);
 
+/// Returns the observations of all frames, which are numbered from 0.
+std::vector<TrackObservation> observations_of(std::span<const Frame> frames);
+
 /// Returns the window of the tracks: undistorted, with inliers, homographies and planes. Rotations
 /// are left at the identity. `timestamps_ns` are those of all frames of the recording,
 /// `on_first_plane` as in `InlierOptions`.
