@@ -294,11 +294,6 @@ CubeImage exaggerated(CubeImage cube, const CubeImage& reference, double times) 
   return cube;
 }
 
-Outlines contact_shadow(const Inspection& inspection, int frame, double side) {
-  if (!inspection.cube || !inspection.initialization->ok) return {};
-  return contact_shadow(inspection, frame, *inspection.cube, side);
-}
-
 Outlines contact_shadow(const Inspection& inspection,
                         int frame,
                         const CubeAnchor& anchor,

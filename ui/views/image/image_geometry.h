@@ -71,12 +71,11 @@ std::optional<CubeImage> true_cube(const Inspection& inspection, int frame, Cube
 CubeImage exaggerated(CubeImage cube, const CubeImage& reference, double times);
 
 /// Returns outlines of the shadow around the cube, outermost first; empty if one is not visible.
+/// The initialization is ok.
 Outlines contact_shadow(const Inspection& inspection,
                         int frame,
                         const CubeAnchor& anchor,
                         double side);
-/// Returns the shadow of the leading plane's cube.
-Outlines contact_shadow(const Inspection& inspection, int frame, double side);
 
 /// Returns the pieces of the horizon in the image, bent by the lens. `up_w` has any length.
 Outlines horizon_in_image(const Camera& camera, const Pose& pose, const Vector3d& up_w);
