@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Draws masks with the mouse.
 #include "ui/panels/panes/view_tools.h"
-#include "ui/views/image/mask_drawing.h"
+#include "ui/views/image/image_geometry.h"
 
 #include <cmath>
 

@@ -138,4 +138,10 @@ void draw_model(const ImageCanvas& canvas,
                 const SolidModel& model,
                 const std::vector<Vector3d>& points_w);
 
+/// Returns the color of a mask's outline.
+std::uint32_t mask_color(MaskKind kind);
+
+/// Draws a mask's outline in dashes and dots, and hatches a mask that leaves out its tracks.
+void draw_mask(const ImageCanvas& canvas, const Mask& mask);
+
 }  // namespace gpo

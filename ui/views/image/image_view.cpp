@@ -6,7 +6,6 @@
 #include "engine/inspection/studies/studies.h"
 #include "engine/window/tracks.h"
 #include "ui/views/image/image_geometry.h"
-#include "ui/views/image/mask_drawing.h"
 
 #include <algorithm>
 #include <map>
@@ -181,7 +180,10 @@ LegendRows legend_rows(const Canvas& canvas) {
   if (options.show.tracks)
     rows = options.colors ? legend_rows(*options.colors) : track_rows(canvas);
   for (LegendRow& row : rows) row.toggle = "tracks";
-  if (canvas.frame == 0) add_mask_rows(inspection.settings.mask, rows);
+  for (const auto& [kind, text] : {std::pair{MaskKind::leave_out, "mask: tracks left out"},
+                                   {MaskKind::plane, "mask: plane 1 only here"}})
+    if (canvas.frame == 0 && inspection.settings.mask.has(kind))
+      rows.push_back({Sign::square, mask_color(kind), text});
   if (!options.show.tracks) hidden("tracks", "tracks");
   const auto add = [&rows](Sign sign, Role role, const std::string& text, const char* toggle = "") {
     rows.push_back({sign, color_of(role), text, toggle});
@@ -215,7 +217,8 @@ LegendRows legend_rows(const Canvas& canvas) {
 
 void draw_results(const Canvas& canvas) {
   const ViewToggles& show = canvas.options.show;
-  if (canvas.frame == 0) draw_masks(canvas, canvas.inspection.settings.mask);
+  if (canvas.frame == 0)
+    for (const Mask& mask : canvas.inspection.settings.mask.areas) draw_mask(canvas, mask);
   if (show.tracks && show.tails) draw_tails(canvas);
   if (show.tracks) draw_tracks(canvas, [](int) { return true; });
   if (show.residuals) draw_residuals(canvas);
