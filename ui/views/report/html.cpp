@@ -1,11 +1,13 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "ui/views/report/html.h"
-
 #include "engine/files/text_file.h"
+#include "ui/views/report/report.h"
+
+#include <algorithm>
+#include <iterator>
+#include <utility>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 namespace gpo {
 namespace {
@@ -29,20 +31,12 @@ std::string html_row(const std::vector<HtmlCell>& cells, const std::string& styl
 std::string html_text(const std::string& text) {
   // Serializing replaces invalid UTF-8.
   const auto valid = nlohmann::json::parse(json_text(text, -1)).get<std::string>();
+  constexpr std::pair<char, const char*> kEscapes[] = {
+      {'&', "&amp;"}, {'<', "&lt;"}, {'>', "&gt;"}, {'"', "&quot;"}, {'\'', "&#39;"}};
   std::string made;
   for (const char c : valid) {
-    if (c == '&')
-      made += "&amp;";
-    else if (c == '<')
-      made += "&lt;";
-    else if (c == '>')
-      made += "&gt;";
-    else if (c == '"')
-      made += "&quot;";
-    else if (c == '\'')
-      made += "&#39;";
-    else
-      made += c;
+    const auto* escape = std::ranges::find(kEscapes, c, &std::pair<char, const char*>::first);
+    made += escape != std::end(kEscapes) ? std::string(escape->second) : std::string(1, c);
   }
   return made;
 }
@@ -53,12 +47,8 @@ std::string data_uri(std::string_view type, std::string_view bytes) {
 
 std::string script_json(const nlohmann::ordered_json& json) {
   std::string made;
-  for (const char c : json_text(json, -1)) {
-    if (c == '<')
-      made += "\\u003c";  // "</script>" and "<!--" would end or change the element
-    else
-      made += c;
-  }
+  // "</script>" and "<!--" would end or change the element.
+  for (const char c : json_text(json, -1)) made += c == '<' ? "\\u003c" : std::string(1, c);
   return made;
 }
 

@@ -6,7 +6,6 @@
 #include "engine/inspection/report/report.h"
 #include "engine/inspection/studies/studies.h"
 #include "ui/views/charts/charts.h"
-#include "ui/views/report/html.h"
 #include "ui/views/report/report.h"
 
 #include <algorithm>

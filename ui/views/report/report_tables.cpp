@@ -5,7 +5,6 @@
 #include "engine/inspection/report/report.h"
 #include "engine/inspection/studies/studies.h"
 #include "engine/recording/board/board.h"
-#include "ui/views/report/html.h"
 #include "ui/views/report/report.h"
 
 #include <algorithm>

@@ -4,7 +4,6 @@
 #include "engine/methods/methods.h"
 #include "tests/ui/made_inspection.h"
 #include "ui/views/image/image_geometry.h"
-#include "ui/views/report/html.h"
 #include "ui/views/report/report.h"
 
 #include <set>
