@@ -185,26 +185,19 @@ void add_camera_items(SceneItems& items, const Inspection& inspection) {
 }
 
 void add_truth_items(SceneItems& items, const Inspection& inspection, const PlaneGrid* grid) {
-  const auto T_est_true = estimate_from_truth(inspection);
-  if (!T_est_true) return;
   const std::string color = css_color(Role::truth);
   const int stride = frustum_stride(inspection);
   const Json style = {{"color", color}, {"alpha", 0.6}};
   std::vector<Vector3d> centers;
-  for (int i = 0; i < std::ssize(inspection.truth->cameras); ++i) {
-    const auto pose = true_camera(inspection, *T_est_true, i);
-    if (!pose) continue;
-    centers.push_back(pose->p_wc);
+  const double depth = 0.75 * frustum_depth(inspection);
+  for (const auto& [i, pose] : true_cameras(inspection)) {
+    centers.push_back(pose.p_wc);
     if (i % stride == 0)
-      add_frustum_items(
-          items,
-          frustum(inspection.recording->camera, *pose, 0.75 * frustum_depth(inspection)),
-          "truth",
-          style);
+      add_frustum_items(items, frustum(inspection.recording->camera, pose, depth), "truth", style);
   }
   if (centers.size() > 1) items.line("truth", centers, false, color)["dashed"] = true;
   if (grid == nullptr) return;
-  if (const auto border = true_plane_border(inspection, *T_est_true, *grid))
+  if (const auto border = true_plane_border(inspection, *grid))
     items.line("truth", {border->begin(), border->end()}, true, color)["dashed"] = true;
 }
 
@@ -226,24 +219,19 @@ void add_point_items(SceneItems& items, const Inspection& inspection) {
 }
 
 void add_cube_items(SceneItems& items, const Inspection& inspection) {
-  constexpr std::array<std::array<int, 4>, 6> kFaces = {
-      {{0, 1, 3, 2}, {4, 5, 7, 6}, {0, 1, 5, 4}, {2, 3, 7, 6}, {0, 2, 6, 4}, {1, 3, 7, 5}}};
   const double side = cube_side(inspection, 0);
   const Window& window = *inspection.window;
   for (const CubeAnchor& cube : all_cubes(inspection)) {
     const auto corners = cube_corners(cube, side);
     const std::string of_faces = css_color(cube_face_color(cube, window));
-    const bool on_first = cube.plane.value_or(window.leader) == 0;
-    const std::string of_base =
-        on_first ? css_color(Role::cube_base) : css_color(cube_color(cube, window));
+    const std::string of_base = css_color(cube_color(cube, window));
     const std::string of_edges = cube.plane ? of_base : css_color(Role::cube_edge);
-    for (const auto& face : kFaces) {
+    for (const auto& face : kCubeFaces) {
       std::vector<Vector3d> points;
       for (const int corner : face) points.push_back(corners[corner]);
       items.add("face", "cube", points, of_faces)["alpha"] = 0.35;
-      const bool base = &face == &kFaces.front();
-      Json& edge = items.line("cube", points, true, base ? of_base : of_edges);
-      edge["width"] = 1.8;
+      const bool base = &face == &kCubeFaces.front();
+      items.line("cube", points, true, base ? of_base : of_edges)["width"] = 1.8;
     }
   }
 }

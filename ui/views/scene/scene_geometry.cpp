@@ -36,10 +36,7 @@ void add_frusta(const Inspection& inspection, Line& extent) {
                       std::back_inserter(extent));
   };
   std::ranges::for_each(found_cameras(*inspection.initialization), add);
-  const auto T_est_true = estimate_from_truth(inspection);
-  if (!T_est_true) return;
-  for (int i = 0; i < std::ssize(inspection.truth->cameras); ++i)
-    if (const auto pose = true_camera(inspection, *T_est_true, i)) add(*pose);
+  for (const auto& [frame, pose] : true_cameras(inspection)) add(pose);
 }
 
 /// Returns the semi-axes of x' C^-1 x = chi_square as columns, the longest last.
@@ -138,12 +135,13 @@ std::optional<Similarity> estimate_from_truth(const Inspection& inspection) {
   return inverted({*scale, reference.R_wc, reference.p_wc});
 }
 
-std::optional<Pose> true_camera(const Inspection& inspection,
-                                const Similarity& T_est_true,
-                                int frame_in_window) {
-  const auto& pose = inspection.truth->cameras[frame_in_window];
-  if (!pose) return std::nullopt;
-  return Pose{T_est_true.R_ab * pose->R_wc, T_est_true * pose->p_wc};
+std::map<int, Pose> true_cameras(const Inspection& inspection) {
+  std::map<int, Pose> cameras;
+  const auto T = estimate_from_truth(inspection);
+  for (int i = 0; T && i < std::ssize(inspection.truth->cameras); ++i)
+    if (const auto& pose = inspection.truth->cameras[i])
+      cameras[i] = {T->R_ab * pose->R_wc, *T * pose->p_wc};
+  return cameras;
 }
 
 Frustum frustum(const Camera& camera, const Pose& pose, double depth) {
@@ -230,12 +228,12 @@ std::optional<double> shown_scale(const Inspection& inspection) {
 }
 
 std::optional<std::array<Vector3d, 4>> true_plane_border(const Inspection& inspection,
-                                                         const Similarity& T_est_true,
                                                          const PlaneGrid& grid) {
-  if (!inspection.truth->plane) return std::nullopt;
+  const auto T_est_true = estimate_from_truth(inspection);
+  if (!T_est_true || !inspection.truth->plane) return std::nullopt;
   const Plane& plane = *inspection.truth->plane;
-  const Vector3d normal = T_est_true.R_ab * plane.normal;
-  const Vector3d on_plane = T_est_true * Vector3d(-plane.distance * plane.normal);
+  const Vector3d normal = T_est_true->R_ab * plane.normal;
+  const Vector3d on_plane = *T_est_true * Vector3d(-plane.distance * plane.normal);
   const double slope = normal.dot(grid.normal);
   if (std::abs(slope) < 0.1) return std::nullopt;
   std::array<Vector3d, 4> border = grid.corners(0.5);
@@ -308,8 +306,7 @@ Line scene_extent(const Inspection& inspection, double cube_side) {
   const PlaneGrid grid = plane_grid(inspection, cube_side);
   add(grid.corners());
   if (inspection.initialization->uncertainty) extent.push_back(normal_arrow(inspection, grid).tip);
-  if (const auto T_est_true = estimate_from_truth(inspection))
-    if (const auto border = true_plane_border(inspection, *T_est_true, grid)) add(*border);
+  if (const auto border = true_plane_border(inspection, grid)) add(*border);
   if (inspection.cube) add(cube_corners(*inspection.cube, cube_side));
   return extent;
 }

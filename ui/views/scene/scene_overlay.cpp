@@ -48,12 +48,11 @@ struct SceneOverlay : Area {
 
 void draw_true_camera(const SceneOverlay& overlay) {
   const Inspection& inspection = overlay.inspection();
-  const auto T_est_true = estimate_from_truth(inspection);
-  if (!T_est_true) return;
-  const auto pose = true_camera(inspection, *T_est_true, overlay.view.in_window());
-  if (!pose) return;
+  const std::map<int, Pose> cameras = true_cameras(inspection);
+  const auto camera = cameras.find(overlay.view.in_window());
+  if (camera == cameras.end()) return;
   const double depth = 0.75 * frustum_depth(inspection);
-  const Frustum corners = frustum(inspection.recording->camera, *pose, depth);
+  const Frustum corners = frustum(inspection.recording->camera, camera->second, depth);
   overlay.frustum_lines(corners, color_of(Role::truth), 2);
 }
 

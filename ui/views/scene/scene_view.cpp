@@ -156,25 +156,23 @@ void add_cameras(const SceneStage& stage) {
 
 void add_truth(const SceneStage& stage, const std::optional<PlaneGrid>& grid) {
   const Inspection& inspection = stage.inspection;
-  const auto T_est_true = estimate_from_truth(inspection);
-  if (!T_est_true) return;
+  const std::map<int, Pose> cameras = true_cameras(inspection);
+  if (cameras.empty()) return;
   const std::uint32_t rgb = color_of(Role::truth);
   const double depth = 0.75 * frustum_depth(inspection);
   const int stride = frustum_stride(inspection);
   Shapes frusta, path, plane;
   std::vector<Vector3d> centers;
-  for (int i = 0; i < std::ssize(inspection.truth->cameras); ++i) {
-    const auto pose = true_camera(inspection, *T_est_true, i);
-    if (!pose) continue;
-    centers.push_back(pose->p_wc);
+  for (const auto& [i, pose] : cameras) {
+    centers.push_back(pose.p_wc);
     if (i % stride == 0)
-      add_frustum(frusta, frustum(inspection.recording->camera, *pose, depth), dimmed(rgb, 0.6));
+      add_frustum(frusta, frustum(inspection.recording->camera, pose, depth), dimmed(rgb, 0.6));
   }
   path.lines(centers, false, rgb);
   stage.add(frusta, 1);
   stage.add(path, 1.6);
   if (!grid) return;
-  if (const auto border = true_plane_border(inspection, *T_est_true, *grid)) {
+  if (const auto border = true_plane_border(inspection, *grid)) {
     plane.lines(*border, true, rgb);
     stage.add(plane, 1.8);
   }

@@ -4,6 +4,8 @@
 
 #include "ui/views/image/image_view.h"
 
+#include <map>
+
 namespace gpo {
 
 /// Transforms the truth to the estimate's world: by the aligned paths if they determine it,
@@ -14,10 +16,8 @@ std::optional<Similarity> estimate_from_truth(const Inspection& inspection);
 /// truth, else from the accelerometer.
 std::optional<double> shown_scale(const Inspection& inspection);
 
-/// Returns the true camera of a frame of the window in the estimate's world; nullopt if unknown.
-std::optional<Pose> true_camera(const Inspection& inspection,
-                                const Similarity& T_est_true,
-                                int frame_in_window);
+/// Returns the known true cameras in the estimate's world, by frame of the window.
+std::map<int, Pose> true_cameras(const Inspection& inspection);
 
 /// The camera's center, the corners of its image at a depth, clockwise from the top left, a mark.
 using Frustum = std::array<Vector3d, 6>;
@@ -54,7 +54,6 @@ PlaneGrid plane_grid(const Inspection& inspection, double cube_side);
 
 /// Projects the grid's border, half a cell wider to show a tilt, onto the true plane, if known.
 std::optional<std::array<Vector3d, 4>> true_plane_border(const Inspection& inspection,
-                                                         const Similarity& T_est_true,
                                                          const PlaneGrid& grid);
 
 /// 95 % quantiles of chi-square for two and three degrees of freedom.
