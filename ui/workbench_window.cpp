@@ -5,7 +5,6 @@
 #include "engine/base/error.h"
 #include "engine/base/stop.h"
 #include "engine/files/output_file.h"
-#include "ui/window_report.h"
 #include "ui/workbench/session/session_file.h"
 
 #include <algorithm>

@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "engine/recording/images/images.h"
 #include "ui/panels/panels.h"
+#include "ui/window_output.h"
 #include "ui/workbench/work/export_writer.h"
 #include "ui/workbench/work/live_host.h"
 #include "ui/workbench/work/recording_writer.h"
@@ -55,30 +55,6 @@ struct Question {
 
 /// Draws a frame with only the question. Returns the answer, nullopt until then. Escape means no.
 std::optional<bool> ask(Gui& gui, cv::Size size, const Question& question);
-
-/// Writes the window's frames into a movie, one a step: the image, or the compared columns.
-class Movie {
- public:
-  using Draw = std::function<cv::Mat(const WorkbenchState&, const std::string& view, cv::Size)>;
-
-  /// Copies the state: later changes do not affect it. Throws InputError if the file is unwritable.
-  Movie(const MovieRequest& request, const WorkbenchState& state);
-
-  /// Draws and writes the next frame; the last one completes the file. Throws InputError.
-  void step(const Draw& draw);
-
-  int done() const { return done_; }
-  int of() const { return frames_; }
-  bool finished() const { return done_ == frames_; }
-  const fs::path& file() const { return video_.file(); }
-
- private:
-  WorkbenchState state_;
-  std::string view_;
-  cv::Size size_;
-  int first_, frames_, done_ = 0;
-  VideoEncoder video_;
-};
 
 /// A workbench with its workers and views, on screen or off. Needs its OpenGL context.
 class WorkbenchHost {

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/methods/methods.h"
 #include "tests/ui/window_test.h"
-#include "ui/window_report.h"
+#include "ui/window_output.h"
 
 #include <gmock/gmock.h>
 

@@ -1,14 +1,18 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "ui/window_report.h"
+#include "ui/window_output.h"
 
 #include "engine/base/error.h"
 #include "engine/experiment/experiment.h"
 #include "engine/files/output_file.h"
 #include "engine/inspection/report/report.h"
 #include "engine/inspection/studies/studies.h"
+#include "engine/window/timestamps.h"
 #include "ui/panels/facts/facts.h"
+#include "ui/views/compare/compare_view.h"
 #include "ui/views/report/report.h"
+
+#include <algorithm>
 
 namespace gpo {
 namespace {
@@ -44,6 +48,20 @@ ReportCommand command_of(const WorkbenchState& state, const ReportSection& secti
       opening_options(recording, {}, given ? state.files.given_topics : TopicChoices{});
   for (const Compared& one : section.methods) command.compared.push_back(one.configuration);
   return command;
+}
+
+double movie_rate_hz(const MovieRequest& request, const Recording& recording) {
+  constexpr double kUnknown_hz = 30;
+  if (request.rate_hz > 0) return request.rate_hz;
+  const double recorded = rate_hz(recording.timestamps_ns);
+  return recorded > 0 ? recorded : kUnknown_hz;
+}
+
+cv::Size movie_size(const WorkbenchState& state) {
+  const Recording& recording = *state.document.recording;
+  if (!state.view.panes.compare) return even_size(shown_size(recording));
+  return even_size(
+      default_compare_size(static_cast<int>(compared_results(state).size()), recording));
 }
 
 }  // namespace
@@ -91,6 +109,23 @@ void write_window_report(const WorkbenchState& state, const fs::path& file, cons
   section.found = found_quickly(recording);
   section.command = report_command(command_of(state, section));
   write_file(file, report_page({.sections = {section}, .program = program_identity()}));
+}
+
+Movie::Movie(const MovieRequest& request, const WorkbenchState& state)
+    : state_(state),
+      view_(state.view.panes.compare ? "compare" : "picture"),
+      size_(movie_size(state)),
+      first_(state.document.settings.start),
+      frames_(std::min(state.document.settings.frames,
+                       state.frame_count() - state.document.settings.start)),
+      video_(request.file, movie_rate_hz(request, *state.document.recording), size_) {}
+
+void Movie::step(const DrawState& draw) {
+  if (finished()) return;
+  state_.view.frame = first_ + done_;
+  video_.add(draw(state_, view_, size_));
+  ++done_;
+  if (finished()) video_.finish();
 }
 
 }  // namespace gpo
