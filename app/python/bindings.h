@@ -42,7 +42,7 @@ struct OpenRecording {
 /// The recording that `run`, `evaluate` and `snapshot` take: an open one or a path.
 using RecordingOrPath = std::variant<OpenRecording, std::filesystem::path>;
 
-/// A Python object that `pickle` restored has only the values of its fields; see `add_field`.
+/// A Python object that `pickle` restored has only the values of its fields; see `AddField`.
 struct Saved {
   py::object fields;  ///< dict; null for an object that was computed
 };
@@ -54,6 +54,7 @@ struct Solved : Saved {
   std::shared_ptr<const std::vector<std::int64_t>> ids;  ///< ids of the window's tracks
   std::shared_ptr<const InertialAlignment> inertial;     ///< null if no accelerometer was used
 
+  const Initialization& operator*() const { return *initialization; }
   const Initialization* operator->() const { return initialization.get(); }
 };
 
@@ -134,28 +135,36 @@ auto interruptible(Work work) {
   return result->get();
 }
 
-/// Adds a read-only property; `to_dict`, `pickle` and `copy.deepcopy` have it, too. Its arrays are
-/// read-only.
-template <class Class, class Get>
-void add_field(Class& owner, const char* name, Get get, const std::string& doc = "") {
-  using T = typename Class::type;
-  const auto value = [name, get](const T& self) -> py::object {
-    if (self.fields) return self.fields[name];
-    using Value = std::decay_t<decltype(std::invoke(get, self))>;
-    if constexpr (std::is_base_of_v<py::object, Value>)
-      return frozen(std::invoke(get, self));
-    else
-      return frozen(py::cast(std::invoke(get, self)));
-  };
-  owner.def_property_readonly(name, value, doc.c_str());
-  owner.attr("_fields") =
-      py::getattr(owner, "_fields", py::tuple()) + py::tuple(py::make_tuple(name));
-}
+/// Adds read-only properties to a class; `to_dict`, `pickle` and `copy.deepcopy` have them, too.
+/// Their arrays are read-only.
+template <class Class>
+struct AddField {
+  Class& owner;
+
+  /// `get`: a function or member of the class, or a member of what the class refers to.
+  template <class Get>
+  void operator()(const char* name, Get get, const char* doc = "") const {
+    using T = typename Class::type;
+    const auto value = [name, get](const T& self) -> py::object {
+      if (self.fields) return self.fields[name];
+      using Value = std::decay_t<decltype(std::invoke(get, self))>;
+      if constexpr (std::is_base_of_v<py::object, Value>)
+        return frozen(std::invoke(get, self));
+      else
+        return frozen(py::cast(std::invoke(get, self)));
+    };
+    owner.def_property_readonly(name, value, doc);
+    owner.attr("_fields") =
+        py::getattr(owner, "_fields", py::tuple()) + py::tuple(py::make_tuple(name));
+  }
+};
+template <class Class>
+AddField(Class&) -> AddField<Class>;
 
 /// Returns all fields of an object by their names.
 py::dict dict_of(const py::object& self);
 
-/// Adds what all objects with fields have. Call it after the last `add_field`.
+/// Adds what all objects with fields have. Call it after the last field is added.
 template <class Class>
 void add_saving(Class& owner) {
   using T = typename Class::type;

@@ -105,15 +105,13 @@ py::object center_covariances_of(const Solved& result) {
 using SolvedClass = py::class_<Solved>;
 
 void bind_verdict(SolvedClass& solved) {
-  add_field(solved, "ok", [](const Solved& r) { return r->ok; });
-  add_field(
-      solved, "reason", [](const Solved& r) { return r->reason; }, "why it failed, or empty");
-  add_field(solved,
-            "readiness",
-            &readiness_of,
-            "'ready', 'weak', 'degenerate' or 'no plane'; None if there is no verdict");
-  add_field(
-      solved,
+  const AddField add{solved};
+  add("ok", &Initialization::ok);
+  add("reason", &Initialization::reason, "why it failed, or empty");
+  add("readiness",
+      &readiness_of,
+      "'ready', 'weak', 'degenerate' or 'no plane'; None if there is no verdict");
+  add(
       "verdict",
       [](const Solved& r) { return r->verdict ? r->verdict->reason : std::string(); },
       "one sentence about the readiness");
@@ -125,89 +123,65 @@ py::array poses_of(const Solved& result) {
 }
 
 void bind_poses_and_points(SolvedClass& solved) {
-  add_field(solved,
-            "R_wc",
-            &poses_of<&Pose::R_wc>,
-            "(N, 3, 3), camera to world, for each frame of the window");
-  add_field(solved, "p_wc", &poses_of<&Pose::p_wc>, "(N, 3) camera centers [plane distances]");
-  add_field(solved,
-            "center_covariances",
-            &center_covariances_of,
-            "(N, 3, 3) of p_wc by the noise of the tracks and the lens, or None");
-  add_field(
-      solved,
+  const AddField add{solved};
+  add("R_wc", &poses_of<&Pose::R_wc>, "(N, 3, 3), camera to world, for each frame of the window");
+  add("p_wc", &poses_of<&Pose::p_wc>, "(N, 3) camera centers [plane distances]");
+  add("center_covariances",
+      &center_covariances_of,
+      "(N, 3, 3) of p_wc by the noise of the tracks and the lens, or None");
+  add(
       "points",
       [](const Solved& r) {
         return view_members<MapPoint>(r->points, &MapPoint::position, r.initialization);
       },
       "(M, 3) [plane distances]");
-  add_field(
-      solved, "point_tracks", &point_tracks_of, "(M,) int32: index of each point's track in `ids`");
-  add_field(
-      solved,
+  add("point_tracks", &point_tracks_of, "(M,) int32: index of each point's track in `ids`");
+  add(
       "ids",
       [](const Solved& r) { return view_integers(*r.ids, r.ids); },
       "(T,) int64, ids of the window's tracks");
-  add_field(solved,
-            "inliers",
-            &inliers_of,
-            "(N, T) bool: in which frames each track agrees with its plane");
-  add_field(solved,
-            "residuals",
-            &residuals_of,
-            "(N, T, 2) undistorted minus projected pixels; NaN if not seen or without a point");
+  add("inliers", &inliers_of, "(N, T) bool: in which frames each track agrees with its plane");
+  add("residuals",
+      &residuals_of,
+      "(N, T, 2) undistorted minus projected pixels; NaN if not seen or without a point");
 }
 
 void bind_planes_and_sensors(SolvedClass& solved) {
-  add_field(
-      solved,
+  const AddField add{solved};
+  add(
       "normal",
       [](const Solved& r) { return r->ok ? std::optional(r->plane.normal) : std::nullopt; },
       "(3,) leading plane's normal in the reference camera: normal . x + distance = 0; None if "
       "it failed");
-  add_field(
-      solved,
+  add(
       "normal_sigma_deg",
       [](const Solved& r) {
         return r->uncertainty ? std::optional(r->uncertainty->normal_sigma_deg) : std::nullopt;
       },
       "standard deviation of the normal [deg], or None; an exact lens if the camera states no "
       "uncertainty");
-  add_field(
-      solved,
+  add(
       "typical_lens_sigma_deg",
       [](const Solved& r) {
         return r->uncertainty ? r->uncertainty->typical_lens_sigma_deg : std::nullopt;
       },
       "the same with a typical calibration [deg]; None if the camera states its uncertainty");
-  add_field(
-      solved,
+  add(
       "rms_px",
       [](const Solved& r) { return r->ok ? std::optional(r->rms_px) : std::nullopt; },
       "root mean square of the method's own errors [px]; None if it failed");
-  add_field(
-      solved,
-      "transfer_rms_px",
-      [](const Solved& r) { return r->transfer_rms_px; },
+  add("transfer_rms_px",
+      &Initialization::transfer_rms_px,
       "root mean square distance to the transferred reference positions [px], or None");
-  add_field(
-      solved,
-      "reprojection_rms_px",
-      [](const Solved& r) { return r->reprojection_rms_px; },
+  add("reprojection_rms_px",
+      &Initialization::reprojection_rms_px,
       "root mean square distance to the projected map points [px], or None");
-  add_field(
-      solved,
-      "bias_rad_s",
-      [](const Solved& r) { return r->bias_rad_s; },
-      "(3,) gyroscope bias [rad/s], or None");
-  add_field(solved,
-            "planes",
-            &planes_of,
-            "[{number, normal (3,), distance, normal_covariance_rad2 (3, 3), tracks: ids}], "
-            "the leading plane first");
-  add_field(
-      solved,
-      "inertial",
+  add("bias_rad_s", &Initialization::bias_rad_s, "(3,) gyroscope bias [rad/s], or None");
+  add("planes",
+      &planes_of,
+      "[{number, normal (3,), distance, normal_covariance_rad2 (3, 3), tracks: ids}], "
+      "the leading plane first");
+  add("inertial",
       &inertial_of,
       "None without an accelerometer, else {gravity_m_s2 (3,): down, in the reference camera, "
       "gravity_sigma_deg, scale [m per plane distance], log_scale_sigma, scale_known, reason: "

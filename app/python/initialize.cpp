@@ -162,6 +162,8 @@ void bind_camera(py::module_& module) {
 struct Status : Saved {
   LiveStatus now;
   std::optional<TrackedWindow> answer;
+
+  const LiveStatus& operator*() const { return now; }
 };
 
 /// Python's Initializer.
@@ -179,10 +181,7 @@ struct Live {
 
 void bind_status(py::module_& module) {
   py::class_<Status> status(module, "LiveStatus", "State of an Initializer after a frame.");
-  const auto add = [&](const char* name, auto member, const char* doc = "") {
-    add_field(
-        status, name, [member](const Status& s) { return s.now.*member; }, doc);
-  };
+  const AddField add{status};
   add("ready", &LiveStatus::ready);
   add("metric", &LiveStatus::metric, "whether the metric scale of the answer is known");
   add("reference", &LiveStatus::reference, "index of the window's first frame");
@@ -195,7 +194,7 @@ void bind_status(py::module_& module) {
   add("waiting", &LiveStatus::waiting, "frames that wait for samples of the gyroscope");
   add("started_anew", &LiveStatus::started_anew);
   add("reason", &LiveStatus::reason);
-  add_field(status, "answer", &Status::answer, "Initialized or None");
+  add("answer", &Status::answer, "Initialized or None");
   add_saving(status);
   status.def("__repr__", [](const py::object& s) {
     const bool ready = s.attr("ready").cast<bool>();
@@ -319,24 +318,21 @@ void bind_initialize(py::module_& module) {
   bind_camera(module);
   py::class_<TrackedWindow, Solved> window(
       module, "Initialized", "One initialization of given tracks.");
-  add_field(window, "is_ready", [](const TrackedWindow& w) { return w.shared->is_ready(); });
-  add_field(
-      window,
+  const AddField add{window};
+  add("is_ready", [](const TrackedWindow& w) { return w.shared->is_ready(); });
+  add(
       "why_not_ready",
       [](const TrackedWindow& w) { return w.shared->why_not_ready(); },
       "one sentence; empty if it is");
-  add_field(
-      window,
+  add(
       "rotations_note",
       [](const TrackedWindow& w) { return w.shared->rotations_note; },
       "why another source of rotations was not used");
-  add_field(
-      window,
+  add(
       "rotations",
       [](const TrackedWindow& w) { return std::string(to_string(w.shared->rotations)); },
       "source of the rotations");
-  add_field(
-      window,
+  add(
       "json",
       [](const TrackedWindow& w) {
         return py::module_::import("gpo._recordings").attr("_json_of_tracks")(w).cast<py::dict>();

@@ -272,24 +272,19 @@ void bind_export(py::class_<Result, Solved>& result, py::module_& module) {
 void bind_result(py::module_& module) {
   py::class_<Result, Solved> result(
       module, "Result", "One initialization of a recording's window, with its input.");
-  add_field(
-      result, "method", [](const Result& r) { return r.shared->settings.options.method.key(); });
-  add_field(
-      result,
+  const AddField add{result};
+  add("method", [](const Result& r) { return r.shared->settings.options.method.key(); });
+  add(
       "recording",
       [](const Result& r) { return r.shared->recording->name; },
       "the recording's name");
-  add_field(result,
-            "frames",
-            &frames_of,
-            "[(timestamp_ns, ids (n,), raw pixels (n, 2))], the input of `initialize`");
-  add_field(result, "metrics", &metrics_of, "None without ground truth, else as in the JSON");
-  add_field(result, "json", &json_of, "output of `run --json` as a dict");
-  add_field(
-      result,
-      "text",
-      [](const Result& r) { return to_text(*r.shared); },
-      "the table that `run` prints");
+  add("frames",
+      &frames_of,
+      "[(timestamp_ns, ids (n,), raw pixels (n, 2))], the input of `initialize`");
+  add("metrics", &metrics_of, "None without ground truth, else as in the JSON");
+  add("json", &json_of, "output of `run --json` as a dict");
+  add(
+      "text", [](const Result& r) { return to_text(*r.shared); }, "the table that `run` prints");
   add_saving(result);
   bind_export(result, module);
   result.def("__str__", [](const py::object& self) { return self.attr("text"); })
