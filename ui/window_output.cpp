@@ -39,15 +39,16 @@ Figure curves_figure(WorkbenchState state) {
   return figure;
 }
 
-ReportCommand command_of(const WorkbenchState& state, const ReportSection& section) {
+std::string command_of(const WorkbenchState& state, const ReportSection& section) {
   const Recording& recording = *section.inspection->recording;
-  ReportCommand command{
-      .recordings = {recording.path}, .opening = {}, .settings = section.inspection->settings};
   const bool given = recording.path == state.files.given;
-  command.opening =
-      opening_options(recording, {}, given ? state.files.given_topics : TopicChoices{});
-  for (const Compared& one : section.methods) command.compared.push_back(one.configuration);
-  return command;
+  std::vector<Configuration> compared;
+  for (const Compared& one : section.methods) compared.push_back(one.configuration);
+  return report_command(
+      recording.path,
+      opening_options(recording, {}, given ? state.files.given_topics : TopicChoices{}),
+      section.inspection->settings,
+      compared);
 }
 
 double movie_rate_hz(const MovieRequest& request, const Recording& recording) {
@@ -107,7 +108,7 @@ void write_window_report(const WorkbenchState& state, const fs::path& file, cons
     if (one.inspection) section.methods.push_back(one);
   section.figures = {growth_figure(*inspection), curves_figure(state)};
   section.found = found_quickly(recording);
-  section.command = report_command(command_of(state, section));
+  section.command = command_of(state, section);
   write_file(file, report_page({.sections = {section}, .program = program_identity()}));
 }
 

@@ -72,11 +72,10 @@ ReportSection section_of(const ReportRecording& opened,
   section.figures = report_figures(opened, *inspection, request, stop);
   section.found =
       to_text(found_in(opened.recording)) + to_text(describe_topics(opened.path, opened.topics));
-  section.command =
-      report_command({.recordings = {opened.path},
-                      .opening = opening_options(*opened.recording, opened.tracks, opened.topics),
-                      .settings = base,
-                      .compared = request.methods ? configurations : std::vector<Configuration>{}});
+  section.command = report_command(opened.path,
+                                   opening_options(*opened.recording, opened.tracks, opened.topics),
+                                   base,
+                                   request.methods ? configurations : std::vector<Configuration>{});
   return section;
 }
 

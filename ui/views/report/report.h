@@ -57,22 +57,18 @@ inline constexpr int kFewestFramesForCurves = 10;
 /// Returns the title of curves over the length of windows from the same start frame.
 std::string curves_title(const std::string& recording, int start);
 
-/// Everything that a report's results depend on.
-struct ReportCommand {
-  std::vector<fs::path> recordings;
-  std::vector<std::string> opening;  ///< options with which they were opened, word by word
-  Settings settings;
-  std::vector<Configuration> compared = {};  ///< empty: only the method of `settings`
-};
-
 /// Returns the options with which a recording was opened, word by word: tracks, topics, and its
 /// calibration from a plane.
 std::vector<std::string> opening_options(const Recording& recording,
                                          const std::optional<fs::path>& tracks,
                                          const TopicChoices& topics);
 
-/// Returns the command line, for a POSIX shell, that computes the same results.
-std::string report_command(const ReportCommand& of);
+/// Returns the command line, for a POSIX shell, that computes the same results. `opening`: the
+/// words of `opening_options`; `compared`: empty for only the method of the settings.
+std::string report_command(const fs::path& recording,
+                           const std::vector<std::string>& opening,
+                           const Settings& settings,
+                           const std::vector<Configuration>& compared = {});
 
 /// Returns the items of a scene in the estimate's world and its camera, for
 /// assets/report/report.js.

@@ -229,9 +229,9 @@ std::string shell_word(const std::string& word) {
 }
 
 /// Returns the options that define the user's own methods, each once.
-std::string method_options(const ReportCommand& of) {
-  std::vector<const Method*> methods{&of.settings.options.method.row()};
-  for (const Configuration& one : of.compared) methods.push_back(&one.method.row());
+std::string method_options(const Settings& settings, const std::vector<Configuration>& compared) {
+  std::vector<const Method*> methods{&settings.options.method.row()};
+  for (const Configuration& one : compared) methods.push_back(&one.method.row());
   std::set<std::string> options;
   bool resampled = false;
   for (const Method* method : methods) {
@@ -314,11 +314,12 @@ std::vector<std::string> opening_options(const Recording& recording,
   return words;
 }
 
-std::string report_command(const ReportCommand& of) {
-  const Settings& settings = of.settings;
-  std::string line = "gpo-inspector report";
-  for (const fs::path& recording : of.recordings) line += " " + shell_word(recording.string());
-  for (const std::string& word : of.opening) line += " " + shell_word(word);
+std::string report_command(const fs::path& recording,
+                           const std::vector<std::string>& opening,
+                           const Settings& settings,
+                           const std::vector<Configuration>& compared) {
+  std::string line = "gpo-inspector report " + shell_word(recording.string());
+  for (const std::string& word : opening) line += " " + shell_word(word);
   const Settings usual;
   for (const Setting& setting : settings_table()) {
     const std::string value = setting_text(settings, setting.key);
@@ -330,11 +331,11 @@ std::string report_command(const ReportCommand& of) {
     else
       line += fmt::format(" --{} {}", option, shell_word(value));
   }
-  line += method_options(of);
-  std::string methods;
-  for (const Configuration& one : of.compared)
-    methods += (methods.empty() ? "" : ",") + key_of(one);
-  if (!methods.empty()) line += " --methods " + shell_word(methods);
+  line += method_options(settings, compared);
+  std::vector<std::string> methods;
+  for (const Configuration& one : compared) methods.push_back(key_of(one));
+  if (!methods.empty())
+    line += " --methods " + shell_word(fmt::format("{}", fmt::join(methods, ",")));
   return line + " --output report.html";
 }
 

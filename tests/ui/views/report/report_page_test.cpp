@@ -137,17 +137,14 @@ TEST(ReportCommand, NamesChangedSettingsAndQuotesPaths) {
   Settings settings;
   settings.frames = 12;
   settings.options.method = "pba";
-  const std::string line = report_command({.recordings = {"it's a path"},
-                                           .opening = {"--tracks", "a b"},
-                                           .settings = settings,
-                                           .compared = parse_configurations("gpo,pba")});
+  const std::string line =
+      report_command("it's a path", {"--tracks", "a b"}, settings, parse_configurations("gpo,pba"));
   EXPECT_THAT(line,
               AllOf(HasSubstr("gpo-inspector report 'it'\\''s a path' --tracks 'a b' "),
                     HasSubstr(" --frames 12"),
                     HasSubstr(" --method pba"),
                     HasSubstr(" --methods gpo,pba --output report.html")));
-  EXPECT_EQ(report_command({.recordings = {"a"}, .opening = {}, .settings = {}}),
-            "gpo-inspector report a --output report.html");
+  EXPECT_EQ(report_command("a", {}, {}), "gpo-inspector report a --output report.html");
 }
 
 TEST(ReportCommand, DefinesEachOwnMethodOnce) {
@@ -158,10 +155,11 @@ TEST(ReportCommand, DefinesEachOwnMethodOnce) {
   const auto choice = [](const Method& method) {
     return MethodChoice(std::make_shared<const Method>(method));
   };
-  ReportCommand of{.recordings = {"a"}, .opening = {}, .settings = {}};
-  of.settings.options.method = choice(result);
-  for (const Method* one : {&command, &result, &command}) of.compared.push_back({choice(*one)});
-  EXPECT_THAT(report_command(of),
+  Settings settings;
+  settings.options.method = choice(result);
+  std::vector<Configuration> compared;
+  for (const Method* one : {&command, &result, &command}) compared.push_back({choice(*one)});
+  EXPECT_THAT(report_command("a", {}, settings, compared),
               HasSubstr(" --method-command 'mine=./mine --fast' --result orb=orb.txt,offset=auto "
                         "--method-resample --methods "));
 }
