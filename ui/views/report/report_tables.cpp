@@ -188,35 +188,33 @@ void add_errors(Numbers& numbers, const Inspection& inspection) {
     numbers.add("error of up", fmt::format("{:.2f} deg", *e->gravity_error_deg), "unknown");
 }
 
-std::string number_or_empty(const std::optional<double>& value, double factor, int digits) {
-  return value ? fmt::format("{:.{}f}", factor * *value, digits) : "";
-}
-
-std::vector<HtmlCell> comparison_row(const Inspection& inspection, bool recordings) {
+/// Returns the cells of a result with the titles of their columns.
+std::vector<std::pair<const char*, HtmlCell>> comparison_cells(const Inspection& inspection) {
   const Row row = make_row(inspection);
   const Initialization& result = *inspection.initialization;
+  const Window& window = *inspection.window;
   const std::string word = !result.ok       ? "failed"
                            : result.verdict ? to_string(result.verdict->readiness)
                                             : "";
   const auto number = [](std::string text) { return HtmlCell{std::move(text), "number"}; };
-  std::vector<HtmlCell> cells;
-  if (recordings) cells.push_back({inspection.recording->name});
-  cells.push_back({title_of(configuration_of(inspection.settings))});
-  cells.push_back({word, word == "no plane" ? "degenerate" : word});
-  cells.push_back(
-      number(fmt::format("{} to {}",
-                         inspection.window->start,
-                         inspection.window->start + inspection.window->frame_count() - 1)));
-  cells.push_back(number(number_or_empty(normal_sigma_deg(inspection), 1, 3)));
-  cells.push_back(number(fmt::format("{}/{}", row.inliers.value_or(0), row.tracks.value_or(0))));
-  cells.push_back(number(number_or_empty(result.reprojection_rms_px, 1, 3)));
-  cells.push_back(number(number_or_empty(row.ate_m, 1e3, 2)));
-  cells.push_back(number(number_or_empty(row.pne_deg, 1, 3)));
-  cells.push_back(number(number_or_empty(row.pde_m, 1e3, 2)));
-  cells.push_back(number(number_or_empty(row.scale_error_percent, 1, 2)));
-  cells.push_back(number(number_or_empty(row.total_ms, 1, 0)));
-  cells.push_back({result.ok ? "" : result.reason});
-  return cells;
+  const auto decimals = [&](const std::optional<double>& value, double factor, int digits) {
+    return number(value ? fmt::format("{:.{}f}", factor * *value, digits) : "");
+  };
+  return {
+      {"recording", {inspection.recording->name}},
+      {"method", {title_of(configuration_of(inspection.settings))}},
+      {"verdict", {word, word == "no plane" ? "degenerate" : word}},
+      {"frames",
+       number(fmt::format("{} to {}", window.start, window.start + window.frame_count() - 1))},
+      {"normal, 1 sigma [deg]", decimals(normal_sigma_deg(inspection), 1, 3)},
+      {"inliers", number(fmt::format("{}/{}", row.inliers.value_or(0), row.tracks.value_or(0)))},
+      {"reprojection [px]", decimals(result.reprojection_rms_px, 1, 3)},
+      {"ATE [mm]", decimals(row.ate_m, 1e3, 2)},
+      {"PNE [deg]", decimals(row.pne_deg, 1, 3)},
+      {"PDE [mm]", decimals(row.pde_m, 1e3, 2)},
+      {"scale error [%]", decimals(row.scale_error_percent, 1, 2)},
+      {"time [ms]", decimals(row.total_ms, 1, 0)},
+      {"reason of the failure", {result.ok ? "" : result.reason}}};
 }
 
 std::string shell_word(const std::string& word) {
@@ -284,21 +282,16 @@ std::string settings_table_html(const Inspection& inspection) {
 std::string comparison_table(const std::vector<std::shared_ptr<const Inspection>>& inspections,
                              bool recordings) {
   NumberRows rows;
-  for (const auto& inspection : inspections)
-    rows.push_back(comparison_row(*inspection, recordings));
-  std::vector<std::string> header = {"method",
-                                     "verdict",
-                                     "frames",
-                                     "normal, 1 sigma [deg]",
-                                     "inliers",
-                                     "reprojection [px]",
-                                     "ATE [mm]",
-                                     "PNE [deg]",
-                                     "PDE [mm]",
-                                     "scale error [%]",
-                                     "time [ms]",
-                                     "reason of the failure"};
-  if (recordings) header.insert(header.begin(), "recording");
+  std::vector<std::string> header;
+  for (const auto& inspection : inspections) {
+    header.clear();
+    std::vector<HtmlCell>& row = rows.emplace_back();
+    for (auto& [title, cell] : comparison_cells(*inspection)) {
+      if (!recordings && std::string_view(title) == "recording") continue;
+      header.emplace_back(title);
+      row.push_back(std::move(cell));
+    }
+  }
   return html_table(header, std::move(rows));
 }
 
