@@ -31,12 +31,8 @@ Figure curves_figure(WorkbenchState state) {
   if (window.frames < kFewestFramesForCurves) return {};
   state.results.experiment.reset();
   state.view.hidden_curves.clear();
-  Figure figure = curve_facts(state).figure;
-  // Each length has one window, so its points are not drawn as few of many.
-  for (Chart& chart : figure.charts)
-    for (Curve& curve : chart.curves) curve.counts.clear();
-  figure.title = curves_title(state.document.recording->name, window.start);
-  return figure;
+  return with_single_windows(
+      curve_facts(state).figure, state.document.recording->name, window.start);
 }
 
 std::string command_of(const WorkbenchState& state, const ReportSection& section) {

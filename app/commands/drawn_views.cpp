@@ -156,11 +156,6 @@ Figure curves_over_length(const std::shared_ptr<const Recording>& recording,
   std::ranges::reverse(rows);
   const bool truth =
       std::ranges::any_of(rows, [](const Row& row) { return !row.alignment.empty(); });
-  Figure figure = truth ? figure_over_length(rows, plan) : figure_without_truth(rows, plan);
-  // One window per length was requested here, so its points are not drawn as few of many.
-  for (Chart& chart : figure.charts)
-    for (Curve& curve : chart.curves) curve.counts.clear();
-  figure.title = curves_title(recording->name, window.start);
   for (const Configuration& configuration : plan.configurations) {
     const auto own = rows_of(rows, {&configuration, 1});
     const bool solved = std::ranges::any_of(own, &Row::ok);
@@ -168,7 +163,10 @@ Figure curves_over_length(const std::shared_ptr<const Recording>& recording,
     if (!solved)
       drawn.failures.push_back(fmt::format("{}: {}", own.back().configuration, own.back().reason));
   }
-  return figure;
+  return with_single_windows(
+      truth ? figure_over_length(rows, plan) : figure_without_truth(rows, plan),
+      recording->name,
+      window.start);
 }
 
 DrawnView draw_view(const std::shared_ptr<const Recording>& recording,

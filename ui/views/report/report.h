@@ -54,8 +54,9 @@ Figure growth_figure(const Inspection& inspection);
 /// Shortest window whose report has curves over window lengths.
 inline constexpr int kFewestFramesForCurves = 10;
 
-/// Returns the title of curves over the length of windows from the same start frame.
-std::string curves_title(const std::string& recording, int start);
+/// Returns curves over the length of windows from the same start frame with their title. Each
+/// length has one window, so its points are not drawn as few of many.
+Figure with_single_windows(Figure figure, const std::string& recording, int start);
 
 /// Returns the options with which a recording was opened, word by word: tracks, topics, and its
 /// calibration from a plane.

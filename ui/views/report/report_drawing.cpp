@@ -32,8 +32,11 @@ ReportSection drawn_section(const std::shared_ptr<const Inspection>& inspection)
   return section;
 }
 
-std::string curves_title(const std::string& recording, int start) {
-  return fmt::format("{}: windows from frame {} over their length", recording, start);
+Figure with_single_windows(Figure figure, const std::string& recording, int start) {
+  for (Chart& chart : figure.charts)
+    for (Curve& curve : chart.curves) curve.counts.clear();
+  figure.title = fmt::format("{}: windows from frame {} over their length", recording, start);
+  return figure;
 }
 
 Figure growth_figure(const Inspection& inspection) {
