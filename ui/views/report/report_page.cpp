@@ -48,23 +48,18 @@ std::string element(const char* name, const std::string& text) {
   return text.empty() ? "" : fmt::format("<{0}>{1}</{0}>\n", name, html_text(text));
 }
 
-struct ShownVerdict {
-  std::string word, style, reason;
-};
-ShownVerdict verdict_of(const Inspection& inspection) {
-  const Initialization& result = *inspection.initialization;
-  if (!result.ok) return {"failed", "failed", result.reason};
-  if (!result.verdict) return {"no verdict", "weak", "the verdict was not computed"};
-  const std::string word = to_string(result.verdict->readiness);
-  return {word, word == "no plane" ? "degenerate" : word, result.verdict->reason};
-}
-
 std::string verdict_element(const Inspection& inspection) {
-  const auto [word, style, reason] = verdict_of(inspection);
-  return fmt::format("<div class=\"verdict {}\"><b>{}</b><span>{}</span></div>\n",
-                     style,
-                     html_text(word),
-                     html_text(reason));
+  const Initialization& result = *inspection.initialization;
+  const auto element = [](const std::string& word, const std::string& style, const auto& reason) {
+    return fmt::format("<div class=\"verdict {}\"><b>{}</b><span>{}</span></div>\n",
+                       style,
+                       html_text(word),
+                       html_text(reason));
+  };
+  if (!result.ok) return element("failed", "failed", result.reason);
+  if (!result.verdict) return element("no verdict", "weak", "the verdict was not computed");
+  const std::string word = to_string(result.verdict->readiness);
+  return element(word, word == "no plane" ? "degenerate" : word, result.verdict->reason);
 }
 
 std::string cards_element(const Inspection& inspection) {
@@ -114,42 +109,27 @@ std::string frames_element(const ReportSection& section, const ImageLevel& level
          figures + "</div>\n";
 }
 
-struct SceneLayer {
-  const char* key;
-  const char* title;
-  std::string color;
-};
-
 std::string layer_boxes(const Inspection& inspection, const nlohmann::ordered_json& scene) {
-  const auto css = [](std::uint32_t rgb) { return fmt::format("#{:06x}", rgb); };
-  const std::uint32_t method = inspection.settings.options.method.row().rgb;
-  const std::array<SceneLayer, 7> layers = {
-      {{"picture", "image on the planes", "#8a8f96"},
-       {"grid", "grid", css(color_of(Role::plane, Theme::light))},
-       {"points", "map points", css(plane_color(inspection.window->leader))},
-       {"cameras", "cameras", css(method)},
-       {"cube", "cube", css(color_of(Role::cube_base, Theme::light))},
-       {"truth", "ground truth", css(color_of(Role::truth, Theme::light))},
-       {"axes", "axes", css(color_of(Role::axis_z, Theme::light))}}};
+  const auto rgb_of = [](Role role) { return color_of(role, Theme::light); };
   std::string boxes;
-  for (const SceneLayer& layer : layers) {
-    const auto is_on_it = [&](const auto& item) { return item["layer"] == layer.key; };
-    if (std::ranges::none_of(scene["items"], is_on_it)) continue;
-    boxes += fmt::format(
-        "<label><input type=\"checkbox\" checked data-layer=\"{}\"><i "
-        "style=\"background:{}\"></i>{}"
-        "</label>",
-        layer.key,
-        layer.color,
-        layer.title);
-  }
+  const auto add = [&](const char* key, const char* title, std::uint32_t rgb) {
+    const auto is_on_it = [&](const auto& item) { return item["layer"] == key; };
+    if (std::ranges::any_of(scene["items"], is_on_it))
+      boxes += fmt::format(
+          "<label><input type=\"checkbox\" checked data-layer=\"{}\"><i "
+          "style=\"background:#{:06x}\"></i>{}</label>",
+          key,
+          rgb,
+          title);
+  };
+  add("picture", "image on the planes", 0x8A8F96);
+  add("grid", "grid", rgb_of(Role::plane));
+  add("points", "map points", plane_color(inspection.window->leader));
+  add("cameras", "cameras", inspection.settings.options.method.row().rgb);
+  add("cube", "cube", rgb_of(Role::cube_base));
+  add("truth", "ground truth", rgb_of(Role::truth));
+  add("axes", "axes", rgb_of(Role::axis_z));
   return boxes;
-}
-
-std::string grid_note(const nlohmann::ordered_json& scene) {
-  return scene.contains("cell")
-             ? fmt::format(" One cell of the grid is {}.", scene["cell"].get<std::string>())
-             : "";
 }
 
 std::string scene_element(const ReportSection& section, const ImageLevel& level) {
@@ -157,6 +137,9 @@ std::string scene_element(const ReportSection& section, const ImageLevel& level)
   const auto scene = report_scene(inspection);
   const std::string alt = fmt::format("The estimate of {} in 3-D: planes, cameras, points and cube",
                                       inspection.recording->name);
+  std::string cell;
+  if (scene.contains("cell"))
+    cell = fmt::format(" One cell of the grid is {}.", scene["cell"].get<std::string>());
   return fmt::format(
       "<h3>Scene</h3>\n<div class=\"scene\">\n{}<canvas tabindex=\"0\" role=\"img\" "
       "aria-label=\"{}\"></canvas><div class=\"tip\"></div>\n"
@@ -171,7 +154,7 @@ std::string scene_element(const ReportSection& section, const ImageLevel& level)
       html_text(alt),
       layer_boxes(inspection, scene),
       script_json(scene),
-      html_text(grid_note(scene)));
+      html_text(cell));
 }
 
 std::string curves_element(const std::vector<Figure>& figures) {
