@@ -127,8 +127,6 @@ struct SignStyle {
 /// Returns a circle in the color of the track's plane, heavier for the leading one, an outlier's
 /// cross, or the dim dot of an excluded track.
 SignStyle track_style(const Inspection& inspection, int frame, int column);
-/// Returns the circle for tracks of a plane.
-SignStyle plane_style(const Window& window, int plane);
 
 SignStyle style_of(Readiness readiness);
 
