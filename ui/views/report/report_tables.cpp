@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/base/error.h"
 #include "engine/experiment/row.h"
+#include "engine/files/text_file.h"
 #include "engine/inspection/report/report.h"
 #include "engine/inspection/studies/studies.h"
 #include "engine/recording/board/board.h"
@@ -10,7 +11,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <set>
+#include <utility>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -28,11 +31,6 @@ std::string vector_text(const Vector3d& v, int digits) {
 /// Returns a standard deviation of a direction; beyond a right angle it means nothing.
 std::string text_of_sigma(double sigma_deg) {
   return sigma_deg > 90 ? "undetermined" : fmt::format("{:.3g} deg", sigma_deg);
-}
-
-/// Returns the root of a direction's covariance's trace.
-double direction_sigma_deg(const Eigen::Matrix3d& covariance_rad2) {
-  return degrees(std::sqrt(std::max(0.0, covariance_rad2.trace())));
 }
 
 /// Collects rows of a quantity, its value, its standard deviation, and what they depend on.
@@ -73,10 +71,10 @@ void add_planes(Numbers& numbers, const Inspection& inspection) {
   for (const PlaneEstimate& one : result.planes) {
     if (one.number == inspection.window->leader) continue;
     const std::string name = plane_title(inspection, one.number);
-    numbers.add("normal of " + name,
-                vector_text(one.plane.normal, 5),
-                one.normal_covariance ? text_of_sigma(direction_sigma_deg(*one.normal_covariance))
-                                      : "unknown");
+    std::string sigma = "unknown";
+    if (const auto& covariance = one.normal_covariance)
+      sigma = text_of_sigma(degrees(std::sqrt(std::max(0.0, covariance->trace()))));
+    numbers.add("normal of " + name, vector_text(one.plane.normal, 5), sigma);
     numbers.add("distance of " + name,
                 fmt::format("{:.4f} d", one.plane.distance),
                 one.distance_sigma ? fmt::format("{:.2g} d", *one.distance_sigma) : "unknown");
@@ -243,7 +241,70 @@ std::string method_options(const Settings& settings, const std::vector<Configura
   return text + (resampled ? " --method-resample" : "");
 }
 
+std::string html_class(const std::string& style) {
+  return style.empty() ? "" : fmt::format(" class=\"{}\"", style);
+}
+
+std::string html_row(const std::vector<HtmlCell>& cells, const std::string& style) {
+  std::string row = fmt::format("<tr{}>", html_class(style));
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    const char* element = i == 0 ? "th" : "td";
+    row += fmt::format(
+        "<{0}{1}>{2}</{0}>", element, html_class(cells[i].style), html_text(cells[i].text));
+  }
+  return row + "</tr>\n";
+}
+
 }  // namespace
+
+std::string html_text(const std::string& text) {
+  // Serializing replaces invalid UTF-8.
+  const auto valid = nlohmann::json::parse(json_text(text, -1)).get<std::string>();
+  constexpr std::pair<char, const char*> kEscapes[] = {
+      {'&', "&amp;"}, {'<', "&lt;"}, {'>', "&gt;"}, {'"', "&quot;"}, {'\'', "&#39;"}};
+  std::string made;
+  for (const char c : valid) {
+    const auto* escape = std::ranges::find(kEscapes, c, &std::pair<char, const char*>::first);
+    made += escape != std::end(kEscapes) ? std::string(escape->second) : std::string(1, c);
+  }
+  return made;
+}
+
+std::string data_uri(std::string_view type, std::string_view bytes) {
+  return fmt::format("data:{};base64,{}", type, to_base64(bytes));
+}
+
+std::string script_json(const nlohmann::ordered_json& json) {
+  std::string made;
+  // "</script>" and "<!--" would end or change the element.
+  for (const char c : json_text(json, -1)) made += c == '<' ? "\\u003c" : std::string(1, c);
+  return made;
+}
+
+std::string html_table(const std::vector<std::string>& header,
+                       std::vector<std::vector<HtmlCell>> rows,
+                       const std::vector<std::string>& row_styles) {
+  std::vector<bool> used(header.size(), false);
+  for (const auto& row : rows)
+    for (std::size_t i = 0; i < row.size(); ++i) used[i] = used[i] || !row[i].text.empty();
+  std::string head;
+  for (std::size_t i = 0; i < header.size(); ++i) {
+    if (!used[i]) continue;
+    const bool number = !rows.empty() && i < rows[0].size() && rows[0][i].style == "number";
+    head += fmt::format("<th{}>{}</th>", number ? " class=\"number\"" : "", html_text(header[i]));
+  }
+  std::string body;
+  for (std::size_t r = 0; r < rows.size(); ++r) {
+    std::vector<HtmlCell> cells;
+    for (std::size_t i = 0; i < rows[r].size(); ++i)
+      if (used[i]) cells.push_back(std::move(rows[r][i]));
+    body += html_row(cells, r < row_styles.size() ? row_styles[r] : "");
+  }
+  return fmt::format(
+      "<div class=\"wide\"><table><thead><tr>{}</tr></thead>\n<tbody>\n{}</tbody></table></div>\n",
+      head,
+      body);
+}
 
 std::string numbers_table(const Inspection& inspection) {
   if (!inspection.initialization->ok) return "";
