@@ -1,5 +1,6 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
+// The table of all commands, and the pages that are generated from them.
 #include "app/commands/commands.h"
 
 #include <algorithm>
@@ -179,6 +180,21 @@ std::string zsh_completion(const CLI::App& app) {
 }
 
 }  // namespace
+
+std::span<const CommandRow> all_commands() {
+  static constexpr CommandRow kRows[] = {{"view", add_view, true},
+                                         {"info", add_info},
+                                         {"convert", add_convert},
+                                         {"record", add_record},
+                                         {"run", add_run, true},
+                                         {"snapshot", add_snapshot, true},
+                                         {"report", add_report, true},
+                                         {"evaluate", add_evaluate, true},
+                                         {"calibrate", add_calibrate},
+                                         {"synthesize", add_synthesize},
+                                         {"pages", add_pages}};
+  return kRows;
+}
 
 RunCommand add_pages(CLI::App& app) {
   const auto page = std::make_shared<Page>();
