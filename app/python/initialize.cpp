@@ -3,7 +3,7 @@
 // Python bindings of engine/initialize.h and live.h: tracks of any front end.
 #include "engine/initialize.h"
 
-#include "app/python/inputs.h"
+#include "app/python/bindings.h"
 #include "engine/base/error.h"
 #include "engine/live.h"
 

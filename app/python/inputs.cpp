@@ -1,7 +1,6 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "app/python/inputs.h"
-
+#include "app/python/bindings.h"
 #include "engine/base/error.h"
 
 #include <algorithm>
