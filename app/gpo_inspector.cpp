@@ -3,7 +3,6 @@
 // The program that users start. Commands that draw nothing run here; the others run in a second
 // program, because its libraries for windows take long to load.
 #include "app/commands/commands.h"
-#include "app/recordings/recordings.h"
 
 #include <algorithm>
 #include <cerrno>

@@ -2,8 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "app/commands/commands.h"
 
-#include "app/recordings/recordings.h"
-#include "app/terminal/terminal.h"
 #include "engine/base/error.h"
 #include "engine/files/text_file.h"
 

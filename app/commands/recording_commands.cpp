@@ -2,14 +2,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The commands that read, write and make recordings: info, convert, record, synthesize.
 #include "app/commands/commands.h"
-#include "app/recordings/recordings.h"
-#include "app/terminal/terminal.h"
 #include "engine/base/error.h"
 #include "engine/calibration/calibration_report.h"
 #include "engine/files/output_file.h"
 #include "engine/files/text_file.h"
 #include "engine/recording/board/board.h"
-#include "engine/recording/layouts/write_recording.h"
 #include "engine/recording/live/live_recording.h"
 #include "engine/synthesis/recipe.h"
 #include "engine/synthesis/synthesize.h"

@@ -1,7 +1,6 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
 #include "app/commands/commands.h"
-#include "app/recordings/recordings.h"
 #include "engine/base/error.h"
 #include "engine/experiment/experiment.h"
 #include "engine/inspection/inspector.h"

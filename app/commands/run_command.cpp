@@ -2,8 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The command that initializes once, or from many starts.
 #include "app/commands/commands.h"
-#include "app/recordings/recordings.h"
-#include "app/terminal/terminal.h"
 #include "engine/base/error.h"
 #include "engine/exports/exports.h"
 #include "engine/files/output_file.h"

@@ -1,9 +1,7 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
 #include "app/commands/commands.h"
-#include "app/recordings/recordings.h"
 #include "engine/base/error.h"
-#include "engine/experiment/row.h"
 #include "ui/window_input.h"
 #include "ui/workbench/session/session_file.h"
 #include "ui/workbench_window.h"

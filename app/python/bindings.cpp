@@ -7,7 +7,6 @@
 #include "engine/files/text_file.h"
 
 #include <algorithm>
-#include <chrono>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>

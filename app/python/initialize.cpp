@@ -1,8 +1,6 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
 // Python bindings of engine/initialize.h and live.h: tracks of any front end.
-#include "engine/initialize.h"
-
 #include "app/python/bindings.h"
 #include "engine/base/error.h"
 #include "engine/live.h"

@@ -10,7 +10,6 @@
 #include "engine/files/text_file.h"
 #include "engine/files/yaml_entry.h"
 #include "engine/recording/companions/companion_files.h"
-#include "engine/recording/images/frame_faults.h"
 #include "engine/recording/images/images.h"
 #include "engine/synthesis/synthesize.h"
 #include "ui/workbench/session/session_file.h"

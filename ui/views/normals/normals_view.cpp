@@ -3,7 +3,6 @@
 #include "ui/views/normals/normals_view.h"
 
 #include "engine/geometry/pose.h"
-#include "engine/inspection/studies/studies.h"
 #include "ui/views/charts/charts.h"
 #include "ui/views/scene/scene_view.h"
 
