@@ -1,6 +1,6 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "ui/context/glyphs.h"
+#include "ui/context/gui.h"
 
 #include <algorithm>
 #include <cmath>
@@ -115,6 +115,8 @@ std::vector<InstalledFont> fonts_with(std::vector<ImWchar> code_points, std::str
   const auto use = [&](InstalledFont font) {
     font.covered = covered_by(font, code_points);
     if (font.covered.empty()) return;
+    for (const ImWchar code : font.covered) font.ranges.insert(font.ranges.end(), 2, code);
+    font.ranges.push_back(0);
     std::erase_if(code_points,
                   [&](ImWchar code) { return std::ranges::binary_search(font.covered, code); });
     found.push_back(std::move(font));
@@ -125,13 +127,6 @@ std::vector<InstalledFont> fonts_with(std::vector<ImWchar> code_points, std::str
   for (int i = 0; fonts && i < fonts->nfont && !code_points.empty(); ++i)
     if (may_have(fonts->fonts[i], code_points)) use(read_font(fonts->fonts[i]));
   return found;
-}
-
-std::vector<ImWchar> ranges_of(std::span<const ImWchar> code_points) {
-  std::vector<ImWchar> ranges;
-  for (const ImWchar code : code_points) ranges.insert(ranges.end(), 2, code);
-  ranges.push_back(0);
-  return ranges;
 }
 
 void reserve_spelled(ImFontAtlas& atlas,

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ui/context/gui.h"
 
-#include "ui/context/glyphs.h"
 #include "ui/context/imgui_versions.h"
 
 #include <algorithm>
@@ -96,20 +95,19 @@ void apply_style(float scale, Theme theme) {
   style.ScaleAllSizes(scale);
 }
 
-/// Adds glyphs to the last font. `ranges`: of each of the fonts in `installed`.
-void add_installed(std::span<const InstalledFont> installed,
-                   std::span<const std::vector<ImWchar>> ranges,
-                   float size_px) {
-  for (std::size_t i = 0; i < installed.size(); ++i) {
-    const std::string& bytes = installed[i].bytes;
+/// Adds glyphs to the last font.
+void add_installed(std::span<const InstalledFont> installed, float size_px) {
+  for (const InstalledFont& font : installed) {
     ImFontConfig config;
     config.FontDataOwnedByAtlas = false;
     config.OversampleH = 1;
-    config.FontNo = installed[i].index;
-    config.GlyphRanges = ranges[i].data();
+    config.FontNo = font.index;
+    config.GlyphRanges = font.ranges.data();
     config.MergeMode = true;
-    ImGui::GetIO().Fonts->AddFontFromMemoryTTF(
-        const_cast<char*>(bytes.data()), static_cast<int>(bytes.size()), size_px, &config);
+    ImGui::GetIO().Fonts->AddFontFromMemoryTTF(const_cast<char*>(font.bytes.data()),
+                                               static_cast<int>(font.bytes.size()),
+                                               size_px,
+                                               &config);
   }
 }
 
@@ -125,17 +123,14 @@ void set_fallback(ImFont& font) {
 void load_fonts(float scale, std::vector<ImWchar> further) {
   ImFontAtlas& atlas = *ImGui::GetIO().Fonts;
   const std::vector<InstalledFont> installed = fonts_with(further, font_file(false));
-  std::vector<std::vector<ImWchar>> ranges;
-  for (const InstalledFont& one : installed) {
-    ranges.push_back(ranges_of(one.covered));
+  for (const InstalledFont& one : installed)
     std::erase_if(further,
                   [&](ImWchar code) { return std::ranges::binary_search(one.covered, code); });
-  }
   for (const auto& [bold, size] :
        {std::pair{false, 16.0F}, {true, 16.0F}, {false, 14.0F}, {true, 20.0F}}) {
     const float size_px = std::round(size * scale);
     add_font(font_file(bold), size_px);
-    add_installed(installed, ranges, size_px);
+    add_installed(installed, size_px);
     reserve_spelled(atlas, *atlas.Fonts.back(), size_px, further);
   }
   atlas.Build();

@@ -94,6 +94,26 @@ class Gui {
   std::vector<ImWchar> provided_;  ///< code points beyond the program's fonts, ascending
 };
 
+/// A font with some of the requested code points.
+struct InstalledFont {
+  std::string bytes;                  ///< content of its file
+  int index = 0;                      ///< position in a collection of fonts
+  std::vector<ImWchar> covered = {};  ///< the requested code points that it has, ascending
+  std::vector<ImWchar> ranges = {};   ///< the same for Dear ImGui, one each, and a 0 at the end
+};
+
+/// Returns fonts that have as many of the code points (ascending) as possible, each in one of them:
+/// the program's `own` one, then those of this machine.
+std::vector<InstalledFont> fonts_with(std::vector<ImWchar> code_points, std::string_view own = {});
+
+/// Reserves glyphs of a font for code points that no font has. Call it before the atlas is built.
+void reserve_spelled(ImFontAtlas& atlas,
+                     ImFont& font,
+                     float size_px,
+                     std::span<const ImWchar> code_points);
+/// Draws all reserved glyphs as "\u4F60", in their own font. Call it after the atlas is built.
+void draw_spelled(ImFontAtlas& atlas);
+
 /// Returns the theme of the current Dear ImGui context; dark if there is none.
 Theme current_theme();
 

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/base/error.h"
 #include "tests/ui/gl_test.h"
-#include "ui/context/glyphs.h"
 #include "ui/context/gui.h"
 #include "ui/window_input.h"
 
