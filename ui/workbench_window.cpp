@@ -142,20 +142,10 @@ bool button(const std::string& title, float scale, bool first) {
   return clicked;
 }
 
-void write(const Question& question, float scale) {
-  const auto wrapped = [](Role role, const std::string& text) {
-    ImGui::PushStyleColor(ImGuiCol_Text, imgui_color(role));
-    ImGui::TextWrapped("%s", text.c_str());
-    ImGui::PopStyleColor();
-  };
-  ImGui::PushFont(font(Font::heading));
-  wrapped(Role::text, question.title);
-  ImGui::PopFont();
-  ImGui::Dummy({1, 6 * scale});
-  for (const std::string& line : question.lines) wrapped(Role::accent, line);
-  ImGui::Dummy({1, 6 * scale});
-  wrapped(Role::text_dim, question.advice);
-  ImGui::Dummy({1, 10 * scale});
+void write_wrapped(Role role, const std::string& text) {
+  ImGui::PushStyleColor(ImGuiCol_Text, imgui_color(role));
+  ImGui::TextWrapped("%s", text.c_str());
+  ImGui::PopStyleColor();
 }
 
 /// Returns "desk-0029.png", or with a number if that exists.
@@ -250,10 +240,10 @@ cv::Mat snapshot_live(const std::string& view,
   return draw_view(view, size, {.state = state, .timings = false}, kDefaultSize, {gui, views});
 }
 
-std::optional<bool> ask(Gui& gui, cv::Size size, const Question& question) {
-  std::vector<std::string_view> texts{question.title, question.advice};
-  texts.insert(texts.end(), question.lines.begin(), question.lines.end());
-  gui.provide_glyphs(texts);
+std::optional<bool> ask_for_commands(Gui& gui,
+                                     cv::Size size,
+                                     const std::vector<std::string>& commands) {
+  gui.provide_glyphs(std::vector<std::string_view>(commands.begin(), commands.end()));
   const float s = gui.scale();
   const auto window_width = static_cast<float>(size.width);
   std::optional<bool> answer;
@@ -268,10 +258,19 @@ std::optional<bool> ask(Gui& gui, cv::Size size, const Question& question) {
                nullptr,
                ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove |
                    ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoSavedSettings);
-  write(question, s);
-  if (button(question.no, s, true)) answer = false;
+  ImGui::PushFont(font(Font::heading));
+  write_wrapped(Role::text, "This session wants to start commands");
+  ImGui::PopFont();
+  ImGui::Dummy({1, 6 * s});
+  for (const std::string& command : commands) write_wrapped(Role::accent, command);
+  ImGui::Dummy({1, 6 * s});
+  write_wrapped(Role::text_dim,
+                "They run with your permissions. Start them only if you trust the author "
+                "of the session. If they are not started, their methods fail.");
+  ImGui::Dummy({1, 10 * s});
+  if (button("Do not start them", s, true)) answer = false;
   ImGui::SameLine(0, 12 * s);
-  if (button(question.yes, s, false)) answer = true;
+  if (button("Start them", s, false)) answer = true;
   if (ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Escape))) answer = false;
   ImGui::End();
   ImGui::PopStyleColor();

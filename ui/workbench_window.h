@@ -46,15 +46,11 @@ cv::Mat snapshot_live(const std::string& view,
                       const Settings& settings,
                       std::optional<cv::Size> size);
 
-struct Question {
-  std::string title;
-  std::vector<std::string> lines;  ///< the subject, line by line
-  std::string advice;
-  std::string yes, no;  ///< texts of the buttons
-};
-
-/// Draws a frame with only the question. Returns the answer, nullopt until then. Escape means no.
-std::optional<bool> ask(Gui& gui, cv::Size size, const Question& question);
+/// Draws a frame that only asks whether to start the commands of a session. Returns the answer,
+/// nullopt until then. Escape means no.
+std::optional<bool> ask_for_commands(Gui& gui,
+                                     cv::Size size,
+                                     const std::vector<std::string>& commands);
 
 /// A workbench with its workers and views, on screen or off. Needs its OpenGL context.
 class WorkbenchHost {

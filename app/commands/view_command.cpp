@@ -63,19 +63,12 @@ struct Session {
     constexpr double kInterval_s = 0.1;
     std::vector<std::string> shown;
     for (const std::string& one : own.waiting) shown.push_back(legible(one, kMaxLength));
-    const Question question{
-        "This session wants to start commands",
-        shown,
-        "They run with your permissions. Start them only if you trust the author "
-        "of the session. If they are not started, their methods fail.",
-        "Start them",
-        "Do not start them"};
     std::optional<bool> answer;
     while (!answer && !window.should_close() && !current_stop().stop_requested()) {
       const cv::Size size = window.size();
       window.bind();
       input.dispatch(host.state);
-      if (size.width > 0 && size.height > 0) answer = ask(gui, size, question);
+      if (size.width > 0 && size.height > 0) answer = gpo::ask_for_commands(gui, size, shown);
       window.swap();
       if (!answer) glfwWaitEventsTimeout(kInterval_s);
     }

@@ -123,19 +123,17 @@ TEST_F(WaitingImage, ComputesTheLifeOfATrackOnce) {
   EXPECT_EQ(views_->lives.computed(), 1U);
 }
 
-const Question kQuestion{.title = "This session starts commands of its own",
-                         .lines = {"mine=python3 mine.py --with %s and a lot of arguments that go "
-                                   "on and on so that they do not fit into one line of the window",
-                                   "other=rm -r everything"},
-                         .advice = "Start them if you know who wrote the session.",
-                         .yes = "Start them",
-                         .no = "Do not start them"};
+const std::vector<std::string> kCommands = {
+    "mine=python3 mine.py --with %s and a lot of arguments that go on and on so that they do not "
+    "fit "
+    "into one line of the window",
+    "other=rm -r everything"};
 
 class QuestionTest : public DrawingTest {
  protected:
   std::optional<bool> draw() {
     context_.bind();
-    return ask(gui_, {1280, 720}, kQuestion);
+    return ask_for_commands(gui_, {1280, 720}, kCommands);
   }
 
   OffscreenContext context_{1280, 720};
