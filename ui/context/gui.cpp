@@ -318,18 +318,6 @@ void mark_content(ImDrawList& list, std::size_t revision) {
   list.AddCallback(draws_nothing, reinterpret_cast<void*>(revision));
 }
 
-WindowImage::DrawnList WindowImage::drawn(const ImDrawList& list) {
-  return {{list.CmdBuffer.begin(), list.CmdBuffer.end()},
-          {list.VtxBuffer.begin(), list.VtxBuffer.end()},
-          {list.IdxBuffer.begin(), list.IdxBuffer.end()},
-          bounds_of(list)};
-}
-
-bool WindowImage::same(const DrawnList& drawn, const ImDrawList& list) {
-  return std::ranges::equal(drawn.commands, list.CmdBuffer, same_command) &&
-         same_items(drawn.vertices, list.VtxBuffer) && same_items(drawn.indices, list.IdxBuffer);
-}
-
 /// Collects the regions where the lists differ from those of the last frame.
 void WindowImage::remember(const ImDrawData& data) {
   const auto count = static_cast<std::size_t>(data.CmdListsCount);
@@ -337,10 +325,16 @@ void WindowImage::remember(const ImDrawData& data) {
   lists_.resize(count);
   for (std::size_t i = 0; i < count; ++i) {
     const ImDrawList& list = *data.CmdLists[i];
-    if (same(lists_[i], list)) continue;
-    add(redrawn_, lists_[i].bounds);
-    lists_[i] = drawn(list);
-    add(redrawn_, lists_[i].bounds);
+    DrawnList& last = lists_[i];
+    if (std::ranges::equal(last.commands, list.CmdBuffer, same_command) &&
+        same_items(last.vertices, list.VtxBuffer) && same_items(last.indices, list.IdxBuffer))
+      continue;
+    add(redrawn_, last.bounds);
+    last = {{list.CmdBuffer.begin(), list.CmdBuffer.end()},
+            {list.VtxBuffer.begin(), list.VtxBuffer.end()},
+            {list.IdxBuffer.begin(), list.IdxBuffer.end()},
+            bounds_of(list)};
+    add(redrawn_, last.bounds);
   }
 }
 

@@ -34,9 +34,6 @@ class WindowImage {
     std::vector<ImDrawIdx> indices;
     cv::Rect bounds;  ///< contains all that it draws
   };
-  static DrawnList drawn(const ImDrawList& list);
-  static bool same(const DrawnList& drawn, const ImDrawList& list);
-
   void remember(const ImDrawData& data);
   void redraw(ImDrawData& data, const cv::Rect& part, std::uint32_t background) const;
 
