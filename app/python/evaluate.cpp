@@ -77,20 +77,16 @@ py::object table_of(const std::vector<Row>& rows) {
   return py::module_::import("numpy").attr("array")(lines, py::arg("dtype") = types);
 }
 
-struct Scratch {
-  fs::path folder;
-  Scratch() : folder(fs::temp_directory_path() / "gpo-XXXXXX") {
-    std::string name = folder.string();
-    if (mkdtemp(name.data()) == nullptr) throw InputError(name + ": cannot be created");
-    folder = name;
-  }
-  ~Scratch() {
-    std::error_code none;
-    fs::remove_all(folder, none);
-  }
-  Scratch(const Scratch&) = delete;
-  Scratch& operator=(const Scratch&) = delete;
-};
+/// Returns a new folder, which is deleted with the last reference to it.
+std::shared_ptr<const fs::path> scratch_folder() {
+  std::string name = (fs::temp_directory_path() / "gpo-XXXXXX").string();
+  if (mkdtemp(name.data()) == nullptr) throw InputError(name + ": cannot be created");
+  return {new fs::path(name), [](const fs::path* folder) {
+            std::error_code none;
+            fs::remove_all(*folder, none);
+            delete folder;
+          }};
+}
 
 /// Returns the changes of settings. Throws InputError if configurations cannot name one.
 std::vector<Configuration::Change> changes_of(const py::kwargs& given, const MethodTable& methods) {
@@ -152,8 +148,8 @@ py::object evaluated(const std::vector<RecordingOrPath>& recordings,
   if (output) check_experiment_folder(*output);
   std::vector<SharedRecording> all;
   for (const RecordingOrPath& recording : recordings) all.push_back(opened(recording));
-  const auto scratch = output ? nullptr : std::make_shared<const Scratch>();
-  const fs::path folder = output ? *output : scratch->folder;
+  const auto scratch = output ? nullptr : scratch_folder();
+  const fs::path folder = output ? *output : *scratch;
   const int threads = jobs > 0 ? jobs : static_cast<int>(std::thread::hardware_concurrency());
   const auto rows = interruptible(
       [all, request, scratch, folder, threads](const std::stop_token& stop) -> std::vector<Row> {
