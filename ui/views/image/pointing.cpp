@@ -175,22 +175,19 @@ std::optional<Vector3d> point_on_plane(const Plane& plane, const ScenePixel& at)
 }
 
 std::optional<CubeAnchor> cube_at(const Inspection& inspection, double side, const ScenePixel& at) {
-  std::optional<CubeAnchor> nearest;
-  double distance = std::numeric_limits<double>::infinity();
-  for (const CubeAnchor& cube : all_cubes(inspection)) {
+  std::vector<CubeAnchor> cubes = all_cubes(inspection);
+  std::erase_if(cubes, [&](const CubeAnchor& cube) {
     const auto corners = cube_corners(cube, side);
-    const double away = (cube.origin - eye(at.camera)).norm();
-    const bool hit = std::ranges::any_of(kCubeFaces, [&](const auto& face) {
+    return std::ranges::none_of(kCubeFaces, [&](const auto& face) {
       Outline outline;
       for (const int corner : face)
         if (const auto pixel = at.pixel_of(corners[corner])) outline.push_back(*pixel);
       return is_inside(outline, at.pixel);
     });
-    if (!hit || away >= distance) continue;
-    distance = away;
-    nearest = cube;
-  }
-  return nearest;
+  });
+  const auto nearest = std::ranges::min_element(
+      cubes, {}, [&](const CubeAnchor& cube) { return (cube.origin - eye(at.camera)).norm(); });
+  return nearest == cubes.end() ? std::nullopt : std::optional(*nearest);
 }
 
 std::optional<PlanePoint> plane_at(const Inspection& inspection, const ScenePixel& at) {
