@@ -6,8 +6,6 @@
 #include <algorithm>
 #include <limits>
 
-#include <Eigen/Geometry>
-
 namespace gpo {
 namespace {
 
@@ -246,11 +244,11 @@ void draw_body(const ImageCanvas& canvas, const CubeBody& body, bool model) {
   }
 }
 
-std::pair<ImVec2, ImVec2> bounds(const ImageCanvas& canvas, const CubeImage& cube) {
+Eigen::AlignedBox2d bounds(const ImageCanvas& canvas, const CubeImage& cube) {
   Eigen::AlignedBox2d box;
   for (const CubeEdge& edge : cube.edges)
     for (const Vector2d& pixel : edge.raw_px) box.extend(to_screen(canvas.mapping, pixel));
-  return {to_imgui(box.min()), to_imgui(box.max())};
+  return box;
 }
 
 void draw_true_cube(const ImageCanvas& canvas, const CubeImage& cube) {

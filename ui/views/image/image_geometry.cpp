@@ -10,7 +10,6 @@
 #include <limits>
 #include <numbers>
 
-#include <Eigen/Geometry>
 #include <opencv2/imgproc.hpp>
 
 namespace gpo {

@@ -6,6 +6,8 @@
 #include "ui/views/model/solid_model.h"
 #include "ui/views/overlay/overlay.h"
 
+#include <Eigen/Geometry>
+
 namespace gpo {
 
 /// Indices of `cube_corners`. The first face is the base; the corners of a face are in turn.
@@ -127,8 +129,8 @@ struct CubeBody {
 /// Draws the cube in soft light; of a model only shadow and base.
 void draw_body(const ImageCanvas& canvas, const CubeBody& body, bool model);
 
-/// Returns the corners on the screen of a box around all edges.
-std::pair<ImVec2, ImVec2> bounds(const ImageCanvas& canvas, const CubeImage& cube);
+/// Returns a box on the screen around all edges.
+Eigen::AlignedBox2d bounds(const ImageCanvas& canvas, const CubeImage& cube);
 
 void draw_true_cube(const ImageCanvas& canvas, const CubeImage& cube);
 

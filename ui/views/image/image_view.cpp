@@ -10,7 +10,6 @@
 #include <algorithm>
 #include <map>
 
-#include <Eigen/Geometry>
 #include <fmt/format.h>
 
 namespace gpo {
@@ -88,10 +87,10 @@ void draw_occluders(const Canvas& canvas, const CubeImage& cube, const CubeAncho
   if (canvas.image == nullptr || canvas.image->id() == nullptr) return;
   const auto [side, height_sides] = canvas.cube_size();
   const auto corners_w = cube_corners(anchor, side, height_sides);
-  const auto [low, high] = bounds(canvas, cube);
+  const Eigen::AlignedBox2d box = bounds(canvas, cube);
   for (const Occluder& occluder :
        occluders(canvas.inspection, canvas.frame, corners_w, anchor.plane)) {
-    canvas.list.PushClipRect(low, high, true);
+    canvas.list.PushClipRect(to_imgui(box.min()), to_imgui(box.max()), true);
     for (const Triangle& triangle : occluder.triangles_raw_px)
       draw_part(canvas, *canvas.image, triangle);
     canvas.list.PopClipRect();
@@ -261,22 +260,16 @@ void draw_extrapolated_frame(const Canvas& canvas) {
     canvas.list.AddLine(to_imgui(start), to_imgui(end), imgui_color(Role::uncertain), 3 * s);
 }
 
-/// A box on the screen: its least and greatest corner.
-using Box = std::pair<ImVec2, ImVec2>;
-
 /// Returns the share of a box that a rectangle covers.
-double covered_share(const ScreenRect& rect, const Box& box) {
-  const Eigen::AlignedBox2d covering(rect.min, rect.min + rect.size);
-  const Eigen::AlignedBox2d covered(Vector2d(box.first.x, box.first.y),
-                                    Vector2d(box.second.x, box.second.y));
-  const Eigen::AlignedBox2d both = covering.intersection(covered);
-  return both.isEmpty() || covered.volume() <= 0 ? 0 : both.volume() / covered.volume();
+double covered_share(const ScreenRect& rect, const Eigen::AlignedBox2d& box) {
+  const auto both = box.intersection({rect.min, rect.min + rect.size});
+  return both.isEmpty() || box.volume() <= 0 ? 0 : both.volume() / box.volume();
 }
 
 /// Returns the boxes of the cubes in all frames of the window.
-std::vector<Box> cube_boxes(const Canvas& canvas) {
+std::vector<Eigen::AlignedBox2d> cube_boxes(const Canvas& canvas) {
   const Inspection& inspection = canvas.inspection;
-  std::vector<Box> boxes;
+  std::vector<Eigen::AlignedBox2d> boxes;
   if (!canvas.options.show.cube || !inspection.initialization->ok) return boxes;
   const int frames = std::min(inspection.window->frame_count(), inspection.tracks->frame_count());
   for (int i = 0; i < frames; ++i)
@@ -304,13 +297,13 @@ Corner legend_corner(const Canvas& canvas, const std::string& title, const Legen
   constexpr double kTracksPerCube = 40;
   constexpr std::array kCorners = {
       Corner::top_left, Corner::top_right, Corner::bottom_left, Corner::bottom_right};
-  const std::vector<Box> cubes = cube_boxes(canvas);
+  const std::vector<Eigen::AlignedBox2d> cubes = cube_boxes(canvas);
   // Below is the badge of a failure.
   const std::size_t candidates = canvas.inspection.initialization->ok ? kCorners.size() : 2;
   return *std::ranges::min_element(std::span(kCorners).first(candidates), {}, [&](Corner corner) {
     const ScreenRect rect = legend_place(canvas.rect, corner, title, rows);
     double covered = covered_tracks(rect, canvas);
-    for (const Box& cube : cubes) covered += kTracksPerCube * covered_share(rect, cube);
+    for (const auto& cube : cubes) covered += kTracksPerCube * covered_share(rect, cube);
     return covered;
   });
 }
