@@ -34,6 +34,7 @@ class WindowImage {
     std::vector<ImDrawIdx> indices;
     cv::Rect bounds;  ///< contains all that it draws
   };
+
   void remember(const ImDrawData& data);
   void redraw(ImDrawData& data, const cv::Rect& part, std::uint32_t background) const;
 

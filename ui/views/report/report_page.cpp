@@ -51,16 +51,16 @@ std::string element(const char* name, const std::string& text) {
 
 std::string verdict_element(const Inspection& inspection) {
   const Initialization& result = *inspection.initialization;
-  const auto element = [](const std::string& word, const std::string& style, const auto& reason) {
+  const auto shown = [](const std::string& word, const std::string& style, const auto& reason) {
     return fmt::format("<div class=\"verdict {}\"><b>{}</b><span>{}</span></div>\n",
                        style,
                        html_text(word),
                        html_text(reason));
   };
-  if (!result.ok) return element("failed", "failed", result.reason);
-  if (!result.verdict) return element("no verdict", "weak", "the verdict was not computed");
+  if (!result.ok) return shown("failed", "failed", result.reason);
+  if (!result.verdict) return shown("no verdict", "weak", "the verdict was not computed");
   const std::string word = to_string(result.verdict->readiness);
-  return element(word, word == "no plane" ? "degenerate" : word, result.verdict->reason);
+  return shown(word, word == "no plane" ? "degenerate" : word, result.verdict->reason);
 }
 
 std::string cards_element(const Inspection& inspection) {
