@@ -7,6 +7,7 @@
 #include "engine/recording/recording.h"
 #include "engine/window/tracks.h"
 
+#include <span>
 #include <string_view>
 #include <variant>
 
