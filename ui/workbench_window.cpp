@@ -328,7 +328,7 @@ void WorkbenchHost::settle() {
   do {
     check_stop();
     synchronize();
-    if (link.busy() || exports_.busy() || recordings_.status().busy)
+    if (link.busy() || exports_.busy() || recordings_.busy())
       std::this_thread::sleep_for(std::chrono::milliseconds(1));
   } while (busy());
   synchronize();

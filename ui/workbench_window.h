@@ -4,9 +4,8 @@
 
 #include "ui/panels/panels.h"
 #include "ui/window_output.h"
-#include "ui/workbench/work/export_writer.h"
 #include "ui/workbench/work/live_host.h"
-#include "ui/workbench/work/recording_writer.h"
+#include "ui/workbench/work/writers.h"
 
 namespace gpo {
 
@@ -88,7 +87,7 @@ class WorkbenchHost {
   void save(const Screenshot& wanted);
   void write_movie();
   bool exporting() const {
-    return exports_.busy() || !state.requests.exports.empty() || recordings_.status().busy ||
+    return exports_.busy() || !state.requests.exports.empty() || recordings_.busy() ||
            state.requests.save_recording;
   }
 

@@ -10,7 +10,7 @@
 #include "engine/recording/live/live_recording.h"
 #include "engine/synthesis/recipe.h"
 #include "engine/synthesis/synthesize.h"
-#include "ui/workbench/work/recording_writer.h"
+#include "ui/workbench/work/writers.h"
 
 #include <algorithm>
 #include <cstdio>

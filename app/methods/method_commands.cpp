@@ -132,8 +132,7 @@ void OwnMethods::add_session(const fs::path& file) {
   if (!allow_commands_) waiting = fresh.commands;
 }
 
-FileReader::ReadMethods session_methods(OwnMethods& own,
-                                        std::function<void(const OwnMethods& added)> added) {
+ReadMethods session_methods(OwnMethods& own, std::function<void(const OwnMethods& added)> added) {
   return [&own, added = std::move(added)](const fs::path& session) {
     const auto read = std::make_shared<OwnMethods>(own);
     read->add_session(session);

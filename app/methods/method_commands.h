@@ -67,8 +67,7 @@ class OwnMethods {
 
 /// Returns what reads the methods of sessions in the background, and adds them to `own`, which must
 /// outlive it, on the thread of the window. `added` is called there before the methods are used.
-FileReader::ReadMethods session_methods(OwnMethods& own,
-                                        std::function<void(const OwnMethods& added)> added);
+ReadMethods session_methods(OwnMethods& own, std::function<void(const OwnMethods& added)> added);
 
 /// Logs each waiting command as not started, with the option that would start it.
 void report_not_started(const OwnMethods& own);

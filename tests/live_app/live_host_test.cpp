@@ -6,7 +6,7 @@
 #include "engine/recording/layouts/open_recording.h"
 #include "tests/engine/test_folder.h"
 #include "ui/workbench/actions/actions.h"
-#include "ui/workbench/work/recording_writer.h"
+#include "ui/workbench/work/writers.h"
 #include "ui/workbench_window.h"
 
 #include <atomic>
@@ -72,7 +72,7 @@ class LiveHostTest : public testing::Test {
   }
   void settle() {
     pump();
-    pump_until([&] { return !link_.busy() && !writer_.status().busy; });
+    pump_until([&] { return !link_.busy() && !writer_.busy(); });
     pump();
   }
   void open_live() {

@@ -112,11 +112,6 @@ std::optional<LoadedModel> ModelReader::get(const std::string& name) {
   return model_;
 }
 
-JobStatus ModelReader::status() const {
-  const auto lock = job_.lock();
-  return job_.status();
-}
-
 BackgroundJob::Job ModelReader::next() {
   if (model_) return nullptr;
   return [this, name = wanted_](const std::stop_token& stop) {

@@ -96,7 +96,7 @@ class ModelReader {
   /// Returns the model of this name (see `read_solid_model`), or requests it instead of the last
   /// one; nullopt while it is being read.
   std::optional<LoadedModel> get(const std::string& name);
-  JobStatus status() const;
+  JobStatus status() const { return locked_status(job_); }
 
  private:
   BackgroundJob::Job next();

@@ -7,7 +7,7 @@
 #include "engine/inspection/report/report.h"
 #include "ui/workbench/actions/actions.h"
 #include "ui/workbench/session/session_file.h"
-#include "ui/workbench/work/export_writer.h"
+#include "ui/workbench/work/writers.h"
 
 #include <algorithm>
 

@@ -65,16 +65,6 @@ void Extrapolator::want(const std::shared_ptr<const Inspection>& inspection, int
   job_.wake();
 }
 
-JobStatus Extrapolator::status() const {
-  const auto lock = job_.lock();
-  return job_.status();
-}
-
-std::shared_ptr<const Extrapolation> Extrapolator::latest() const {
-  const auto lock = job_.lock();
-  return latest_;
-}
-
 BackgroundJob::Job Extrapolator::next() {
   const int known = latest_ ? static_cast<int>(latest_->cameras.size()) : 0;
   if (!wanted_ || frames_ <= known || (latest_ && !latest_->end.empty())) return nullptr;

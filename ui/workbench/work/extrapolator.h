@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "engine/base/internal/background_job.h"
 #include "engine/inspection/studies/studies.h"
+#include "ui/workbench/work/task_queue.h"
 
 #include <functional>
 
@@ -22,9 +22,9 @@ class Extrapolator {
   /// because the front end follows its tracks from the start of the window again.
   void want(const std::shared_ptr<const Inspection>& inspection, int frame);
 
-  JobStatus status() const;
+  JobStatus status() const { return locked_status(job_); }
   /// For the requested inspection; null: none.
-  std::shared_ptr<const Extrapolation> latest() const;
+  std::shared_ptr<const Extrapolation> latest() const { return locked(job_, latest_); }
 
  private:
   BackgroundJob::Job next();

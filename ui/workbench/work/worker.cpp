@@ -131,18 +131,24 @@ bool scan_for_starts(WorkbenchState& state, WorkerLink& link, Scan& scan) {
   return go_to_found_start(state, link);
 }
 
+/// Stops to read a file, and drops one that has been read.
+void stop_reading(WorkerLink& link) {
+  link.reader->cancel();
+  link.reader->take();
+}
+
 /// Opens a recording, or first reads a file that may be something else. Returns whether the worker
 /// has something to do.
 bool open_path(WorkbenchState& state, WorkerLink& link, Worker& worker, const fs::path& path) {
   std::error_code none;
   const bool readable = path.extension() == ".json" || path.extension() == ".csv";
+  stop_reading(link);
   if (readable && fs::is_regular_file(path, none)) {
-    link.reader->read(path, state.methods, link.read_methods);
+    link.reader->add(reading_of(path, state.methods, link.read_methods));
     return false;
   }
   auto& waiting = state.files.waiting_session;
   if (waiting && waiting->recording.filename() != path.filename()) waiting.reset();
-  link.reader->cancel();
   link.opening = path;
   worker.open(path);
   return true;
@@ -183,7 +189,7 @@ bool cancel_report(WorkbenchState& state) {
 
 void cancel(WorkbenchState& state, WorkerLink& link, Worker& worker) {
   worker.cancel();
-  link.reader->cancel();
+  stop_reading(link);
   link.finding_start = false;
   const bool loading = std::exchange(link.loading, false) || link.reading.busy;
   const bool calibrating = std::exchange(link.calibrating, false);
@@ -262,11 +268,6 @@ void Worker::cancel() {
   opening_ = false;
 }
 
-JobStatus Worker::status() const {
-  const auto lock = job_.lock();
-  return job_.status();
-}
-
 BackgroundJob::Job Worker::next() {
   opening_ = next_opening_ != nullptr;
   if (opening_)
@@ -325,14 +326,14 @@ void synchronize(
   const bool compute =
       state.document.recording && (opened || again || state.document.settings != link.requested);
   if (open_example) {
-    link.reader->cancel();
+    stop_reading(link);
     link.opening.clear();
     worker.open(link.example);
   }
   link.reading = link.reader->status();  // before `take`, so that idle implies that it was taken
   auto read = link.reader->take();
   bool opening = open && open_path(state, link, worker, *open);
-  if (!open && read) opening = open_read(state, link, worker, std::move(*read));
+  if (!open && !read.empty()) opening = open_read(state, link, worker, std::move(read.front()));
   link.loading = open_example || opening || (link.loading && link.worker.busy && !opened);
   if (calibrate) worker.calibrate();
   const bool undo = std::exchange(state.requests.undo_calibration, false);

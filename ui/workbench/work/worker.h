@@ -2,24 +2,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "engine/base/internal/background_job.h"
-#include "engine/inspection/inspector.h"
 #include "ui/workbench/state.h"
 #include "ui/workbench/work/extrapolator.h"
+#include "ui/workbench/work/task_queue.h"
 
 #include <functional>
 #include <stop_token>
 
 namespace gpo {
-
-class Inspector;
-
-/// Returns a copy of a value that the job changes.
-template <class T>
-T locked(const BackgroundJob& job, const T& value) {
-  const auto lock = job.lock();
-  return value;
-}
 
 /// Computes inspections and normal studies of a recording in order and caches them. Thread-safe.
 class Survey {
@@ -134,7 +124,7 @@ class Worker {
   /// Stops the running job and discards waiting requests.
   void cancel();
 
-  JobStatus status() const;
+  JobStatus status() const { return locked_status(job_); }
   Published latest() const { return locked(job_, published_); }
 
   static Opened with_inspector(std::shared_ptr<const Recording> recording);
@@ -173,31 +163,16 @@ struct ReadFile {
   std::string error = {};                                       ///< why it cannot be read, one line
 };
 
-/// Reads results of `evaluate` and sessions in the background. Thread-safe.
-class FileReader {
- public:
-  /// Reads the methods of a session; may throw InputError.
-  using ReadMethods = std::function<SessionMethods(const fs::path& session)>;
+using FileReader = TaskQueue<ReadFile>;
 
-  /// `changed` is called on the reader's thread when a file has been read.
-  explicit FileReader(std::function<void()> changed = {});
+/// Reads the methods of a session; may throw InputError.
+using ReadMethods = std::function<SessionMethods(const fs::path& session)>;
 
-  /// Requests a file instead of the last one. Without `read_methods` only `methods` are known.
-  void read(const fs::path& file, const MethodTable& methods, const ReadMethods& read_methods = {});
-  void cancel();
-  JobStatus status() const;
-  /// Returns the file that has been read since the last call; nullopt if there is none.
-  std::optional<ReadFile> take();
-
- private:
-  BackgroundJob::Job next();
-
-  fs::path wanted_;  ///< empty: none
-  MethodTable methods_;
-  ReadMethods read_methods_;
-  std::optional<ReadFile> read_;
-  BackgroundJob job_;
-};
+/// Returns the task that reads results of `evaluate` or a session. Without `read_methods` only
+/// `methods` are known.
+FileReader::Task reading_of(const fs::path& file,
+                            const MethodTable& methods,
+                            const ReadMethods& read_methods);
 
 /// Returns the earliest ready start of a recording; null if none, or if an earlier one may come.
 const ScannedStart* first_ready(const StartScan& scan);
@@ -221,7 +196,7 @@ struct WorkerLink {
   bool calibrates = false;           ///< every recording opened with a guessed camera
   bool finding_start = false;        ///< until the scan has found one or is replaced
   bool survey_canceled = false;      ///< and the scan; until something else is computed
-  FileReader::ReadMethods read_methods;  ///< null: sessions add none
+  ReadMethods read_methods;          ///< null: sessions add none
 
   bool busy() const { return worker.busy || survey.busy || scan.busy || reading.busy; }
 };

@@ -1,6 +1,6 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "ui/workbench/work/export_writer.h"
+#include "ui/workbench/work/writers.h"
 
 #include "engine/exports/scene.h"
 #include "engine/inspection/studies/studies.h"
