@@ -323,6 +323,11 @@ std::vector<Settings> wanted_inspections(const WorkbenchState& state) {
   return wanted;
 }
 
+bool is_frozen(const WorkbenchState& state) {
+  const auto& recording = state.document.recording;
+  return !state.live && recording && recording->layout == kLiveLayout && !state.live_source.empty();
+}
+
 std::vector<ShownResult> shown_results(const WorkbenchState& state) {
   std::vector<ShownResult> shown;
   if (!state.results.inspection) return shown;

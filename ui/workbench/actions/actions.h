@@ -166,9 +166,9 @@ struct SelectTracks {
   void operator()(WorkbenchState& state) const { state.selection = selection; }
 };
 
-/// Moves the cube of the plane that a pixel X Y of the current frame shows there. Throws
-/// InputError.
-void put_cube_at_pixel(WorkbenchState& state, const Arguments& arguments);
+/// Moves a cube to a pixel X Y of the current frame, or to a ray X Y Z [PLANE] of the reference
+/// camera. Throws InputError.
+void put_cube(WorkbenchState& state, const Arguments& arguments);
 
 /// Commands collected while a frame is drawn, to be applied after it.
 using Commands = std::vector<Command>;
@@ -177,11 +177,9 @@ inline void apply(WorkbenchState& state, const Command& command) { command(state
 
 // The rows of `actions()`, one function a menu.
 void add_file_actions(std::vector<Action>& table);
-void add_live_actions(std::vector<Action>& table);  ///< a part of the menu File
 void add_edit_actions(std::vector<Action>& table);
 void add_point_actions(std::vector<Action>& table);
-void add_mask_actions(std::vector<Action>& table);   ///< a part of the menu Edit
-void add_track_actions(std::vector<Action>& table);  ///< a part of the menu Edit
+void add_mask_actions(std::vector<Action>& table);  ///< a part of the menu Edit
 void add_view_actions(std::vector<Action>& table);
 void add_time_actions(std::vector<Action>& table);
 void add_method_actions(std::vector<Action>& table);

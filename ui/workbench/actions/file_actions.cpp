@@ -9,9 +9,6 @@
 #include "ui/workbench/session/session_file.h"
 #include "ui/workbench/work/writers.h"
 
-#include <algorithm>
-
-#include <GLFW/glfw3.h>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -156,6 +153,62 @@ void add_open(const MenuRows& menu) {
              [](State& s) { s.requests.open_example = true; });
 }
 
+/// Opens a source, or without an address the list of cameras.
+void open_live(State& state, const Arguments& arguments) {
+  if (!state.files.asks)
+    throw InputError("live: only a user at the window opens cameras and streams, no script");
+  if (arguments.empty()) {
+    state.view.palette.reset();
+    state.view.browse.reset();
+    state.view.sources = list_cameras();
+    return;
+  }
+  if (!is_live_address(arguments[0]))
+    throw InputError(
+        fmt::format("live: '{}', expected camera:0, rtsp://, http:// or udp://", arguments[0]));
+  state.view.sources.reset();
+  state.requests.live = arguments[0];
+}
+
+void freeze(State& state) {
+  if (state.live)
+    state.requests.freeze = true;
+  else if (is_frozen(state))
+    state.requests.live = state.live_source;
+  else
+    throw InputError("freeze: no camera or stream is open");
+}
+
+void save_recording(State& state, const Arguments& arguments) {
+  if (state.live) throw InputError("save-recording: freeze the images with Space first");
+  if (!state.document.recording->images)
+    throw InputError("save-recording: the recording has no images");
+  state.requests.save_recording = fs::absolute(arguments[0]);
+}
+
+void add_live(const MenuRows& menu) {
+  Action& live = menu.anytime().add(
+      {"live",
+       "Open a camera or a stream",
+       "Opens camera:0, rtsp://, http:// or udp://; without an address lists the cameras"},
+      "[ADDRESS]",
+      open_live);
+  live.opens_field = true;
+  live.opens_device = true;
+  Action& freezing = menu.anytime().plain(
+      {"freeze",
+       "Freeze or continue",
+       "Makes the last seconds of a camera or a stream a recording, or continues with live images"},
+      freeze);
+  freezing.shortcuts = {{.character = U' ', .label = "Space"}};
+  freezing.takes_keys = [](const State& s) { return s.live || is_frozen(s); };
+  menu.add({"save-recording",
+            "Save the recording",
+            "Writes the recording as an EuRoC folder, or to a file .bag or .mcap as a ROS bag"},
+           "PATH",
+           save_recording);
+}
+
 /// Saves to the given file, else to the last one; the first time the user is asked.
 void save_session(State& state, const Arguments& arguments) {
   if (state.document.recording->layout == kLiveLayout)
@@ -221,85 +274,12 @@ void add_images(const MenuRows& menu) {
            export_video);
 }
 
-void add_undo(const MenuRows& menu) {
-  Action& undo = menu.plain(
-      {"undo", "Undo", "Undoes the last change to settings, excluded tracks or cube position"},
-      gpo::undo);
-  undo.shortcuts = {control('Z')};
-  undo.value = [](const State& s) { return std::to_string(s.document.undo.size()); };
-  Action& redo = menu.plain({"redo", "Redo", "Reapplies the change that was undone"}, gpo::redo);
-  redo.shortcuts = {control('Y')};
-  redo.value = [](const State& s) { return std::to_string(s.document.redo.size()); };
-  menu.plain(
-      {"reset-cube", "Reset the cube position", "Moves the cubes back to their default places"},
-      [](State& s) { move_cube(s, std::nullopt); });
-}
-
-void select_track(State& state, const Arguments& arguments) {
-  const std::int64_t id = arguments.whole_number();
-  if (!std::ranges::binary_search(tracks_of_window(state), id))
-    throw InputError(fmt::format("select track: the window has no track {}", id));
-  state.selection = extended(state.selection, {&id, 1});
-}
-
-void add_selection(const MenuRows& menu) {
-  menu.add({"select track", "Select a track", "Selects a track by its id"}, "ID", select_track);
-  menu.add({"select rectangle",
-            "Select the tracks in a rectangle",
-            "Selects the tracks of the current frame in a rectangle of the image [px]"},
-           "LEFT TOP RIGHT BOTTOM",
-           [](State& s, const Arguments& a) {
-             s.selection =
-                 selected(tracks_within(s, {a.number(0), a.number(1)}, {a.number(2), a.number(3)}));
-           });
-  menu.plain({"select outliers",
-              "Select the outliers",
-              "Selects the tracks that are outliers in the current frame"},
-             [](State& s) { s.selection = selected(outliers_in_view(s)); });
-  menu.plain({"select invert",
-              "Invert the selection",
-              "Selects the tracks of the current frame that are not selected"},
-             [](State& s) { s.selection = inverted(s.selection, tracks_in_view(s)); })
-      .shortcuts = {control('I')};
-  menu.plain({"select none", "Select nothing", "Clears the selection"},
-             [](State& s) { s.selection = {}; });
-}
-
-/// Without a number, of the track selected last.
-void choose_main_plane(State& state, const Arguments& arguments) {
-  Settings settings = state.document.settings;
-  const auto& inspection = state.results.inspection;
-  if (!arguments.empty()) {
-    settings = with_setting(settings, "plane", arguments[0], state.methods);
-    const int planes = inspection ? static_cast<int>(inspection->window->planes.size()) : 0;
-    if (planes > 0 && settings.options.plane > planes)
-      throw InputError(
-          fmt::format("main-plane: {}, the window has {}", arguments[0], counted(planes, "plane")));
-  } else {
-    const auto& focus = state.selection.focus;
-    if (!focus) throw InputError("main-plane: no track is selected");
-    const auto plane = inspection ? to_main_plane(*inspection, *focus) : std::nullopt;
-    if (!plane) throw InputError(fmt::format("main-plane: track {} is on no other plane", *focus));
-    settings.options.plane = *plane;
-  }
-  change_settings(state, settings);
-}
-
-void add_main_plane(const MenuRows& menu) {
-  menu.add({"main-plane",
-            "Make this the main plane",
-            "Makes the plane of the selected track, or that of a number, the leading one and "
-            "computes again"},
-           "[PLANE]",
-           choose_main_plane);
-}
-
 }  // namespace
 
 void add_file_actions(std::vector<Action>& table) {
   const MenuRows menu{table, "File"};
   add_open(menu.anytime());
-  add_live_actions(table);
+  add_live(menu);
   add_sessions(menu);
   add_images(menu);
   add_exports({table, "File", "Export"});
@@ -312,14 +292,6 @@ void add_file_actions(std::vector<Action>& table) {
   menu.anytime()
       .plain({"quit", "Quit", "Closes the window"}, [](State& s) { s.requests.quit = true; })
       .shortcuts = {control('Q')};
-}
-
-void add_edit_actions(std::vector<Action>& table) {
-  const MenuRows menu{table, "Edit"};
-  add_undo(menu);
-  add_selection({table, "Edit", "Select"});
-  add_main_plane(menu);
-  add_track_actions(table);
 }
 
 }  // namespace gpo

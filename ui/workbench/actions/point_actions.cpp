@@ -102,9 +102,7 @@ void set_origin(State& state, const Arguments& arguments) {
   choose_points(state, std::move(settings));
 }
 
-}  // namespace
-
-void put_cube_at_pixel(WorkbenchState& state, const Arguments& arguments) {
+void put_cube_at_pixel(State& state, const Arguments& arguments) {
   const int frame = frame_in_window(state);
   const Inspection& inspection = *state.results.inspection;
   const Vector2d raw_px = pixel_of(state, arguments);
@@ -117,6 +115,24 @@ void put_cube_at_pixel(WorkbenchState& state, const Arguments& arguments) {
     throw InputError(fmt::format(
         "{}: {} is not in this direction", arguments.action, plane_title(inspection, number)));
   move_cube(state, to, number == leader ? 0 : number + 1);
+}
+
+}  // namespace
+
+void put_cube(State& state, const Arguments& arguments) {
+  if (arguments.size() == 2) return put_cube_at_pixel(state, arguments);
+  const Vector3d ray(arguments.number(0), arguments.number(1), arguments.number(2));
+  const int plane = arguments.size() > 3 ? arguments.whole_number(3) : 0;
+  const auto& inspection = state.results.inspection;
+  if (!inspection || !inspection->initialization->ok)
+    throw InputError("put-cube: there is no plane to put it on");
+  const int number = plane == 0 ? inspection->window->leader : plane - 1;
+  const Plane* on = estimated_plane(*inspection, number);
+  if (on == nullptr) throw InputError(fmt::format("put-cube: plane {} has no estimate", plane));
+  if (!ray.allFinite() || !intersect(*on, inspection->initialization->cameras.front(), ray))
+    throw InputError(
+        fmt::format("put-cube: {} is not in this direction", plane_title(*inspection, number)));
+  move_cube(state, ray, number == inspection->window->leader ? 0 : number + 1);
 }
 
 void add_point_actions(std::vector<Action>& table) {
