@@ -2,9 +2,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ui/workbench/state.h"
 
+#include "engine/base/error.h"
+
 #include <algorithm>
-#include <iterator>
 #include <limits>
+#include <set>
 #include <utility>
 
 #include <Eigen/Geometry>
@@ -44,59 +46,35 @@ TimeSpan within(double first, int count, int frames) {
   return {std::clamp(least, 0, frames - count), count};
 }
 
-Compared compared(const WorkbenchState& state, const Settings& settings) {
-  Compared one{name_among_compared(state, settings), settings};
-  if (const Surveyed* found = find_surveyed(state.results.surveyed.get(), one.settings)) {
-    one.inspection = found->inspection;
-    one.error = found->error;
-  }
-  // Equal settings may be written differently: a default left out or written out.
-  if (!one.inspection && state.results.inspection &&
-      as_used(state.results.inspection->settings) == as_used(settings))
-    one.inspection = state.results.inspection;
-  return one;
+void push_undo(Document& document) {
+  constexpr std::size_t kMostUndo = 200;
+  document.undo.push_back(document);
+  if (document.undo.size() > kMostUndo) document.undo.erase(document.undo.begin());
+  document.redo.clear();
 }
 
-Compared current_result(const WorkbenchState& state) {
-  const Settings& settings = state.document.settings;
-  const auto& latest = state.results.inspection;
-  return {name_among_compared(state, settings),
-          settings,
-          latest && latest->settings == settings ? latest : nullptr};
+/// Restores the last step of `from` and appends the current one to `to`. A note on the change that
+/// is undone would be wrong now, so it vanishes.
+void step_back(WorkbenchState& state, std::vector<UndoStep>& from, std::vector<UndoStep>& to) {
+  if (from.empty()) return;
+  Document& document = state.document;
+  if (state.messages.severity == Severity::note) state.messages.text.clear();
+  to.push_back(document);
+  static_cast<UndoStep&>(document) = from.back();
+  from.pop_back();
+  document.dragging_settings = false;
 }
 
-/// The ray on which all cubes are placed, in the reference camera.
-std::optional<Vector3d> common_ray(const WorkbenchState& state, const std::vector<Compared>& all) {
-  if (state.document.cube_ray) return state.document.cube_ray;
-  for (const Compared& one : all) {
-    if (!one.inspection || !one.inspection->cube) continue;
-    // On a board all cubes have the same corners.
-    if (one.inspection->cube->on_board) return std::nullopt;
-    return one.inspection->cube->origin;
-  }
-  return std::nullopt;
-}
-
-void place_cubes_alike(const WorkbenchState& state, std::vector<Compared>& all) {
-  const auto ray = common_ray(state, all);
-  for (Compared& one : all)
-    one.inspection = with_cube(one.inspection, ray, state.document.other_cube_rays);
-}
-
-std::vector<Compared> unmoved_results(const WorkbenchState& state) {
-  std::vector<Compared> all;
-  for (const Settings& settings : compared_settings(state, state.document.settings))
-    all.push_back(compared(state, settings));
-  return all;
-}
-
-/// Settings to which the image flips: the first that differ. nullopt: `flip` is off, or none do.
-std::optional<Settings> flipped_settings(const WorkbenchState& state) {
-  const Configuration current = name_among_compared(state, state.document.settings);
-  if (state.view.flip)
-    for (const Settings& one : compared_settings(state, state.document.settings))
-      if (name_among_compared(state, one) != current) return one;
-  return std::nullopt;
+/// Removes what belongs to the reference frame `before.start` from settings with another one: the
+/// ids of excluded tracks, and the areas of masks, whose content is elsewhere in another image.
+void leave_reference_frame(WorkbenchState& state, Settings& settings, const Settings& before) {
+  const auto masks = before.mask.areas.size();
+  if (masks > 0 && state.document.settings.mask == before.mask)
+    say(state,
+        counted(masks, "mask") + " of frame " + std::to_string(before.start) +
+            " removed: the window starts elsewhere. Ctrl+Z restores both");
+  settings.exclude.clear();
+  settings.mask = {};
 }
 
 }  // namespace
@@ -238,111 +216,105 @@ Settings end_window_at(Settings settings, int frame, int frame_count) {
   return fit_window(settings, frame_count);
 }
 
-std::shared_ptr<const Inspection> with_cube(std::shared_ptr<const Inspection> inspection,
-                                            const std::optional<Vector3d>& ray_c,
-                                            const std::map<int, Vector3d>& others_c) {
-  if (!inspection || (!ray_c && others_c.empty())) return inspection;
-  Inspection moved = *inspection;
-  if (ray_c) move_cubes(moved, *ray_c);
-  for (const auto& [plane, ray] : others_c) move_cubes(moved, ray, plane - 1);
-  return std::make_shared<const Inspection>(std::move(moved));
-}
-
-Configuration name_among_compared(const WorkbenchState& state, const Settings& settings) {
-  return configuration_of(settings, base_of(state.document.compared, state.document.settings));
-}
-
-std::vector<Settings> compared_settings(const WorkbenchState& state, const Settings& window) {
-  const std::vector<Configuration>& list = state.document.compared;
-  const Settings base = base_of(list, window);
-  std::vector<Settings> all;
-  for (const Configuration& one : list) all.push_back(apply(one, base));
-  return all;
-}
-
-std::vector<Settings> settings_with_current(const WorkbenchState& state, const Settings& window) {
-  std::vector<Settings> all = compared_settings(state, window);
-  const Configuration current = name_among_compared(state, window);
-  const auto is_current = [&](const Settings& one) {
-    return name_among_compared(state, one) == current;
-  };
-  if (std::ranges::none_of(all, is_current)) all.insert(all.begin(), window);
-  return all;
-}
-
-std::vector<Compared> compared_results(const WorkbenchState& state) {
-  std::vector<Compared> all = compared_with_current(state);
-  place_cubes_alike(state, all);
-  if (state.view.flip && all.size() > 1) std::swap(all[0], all[1]);
-  return all;
-}
-
-std::vector<Compared> compared_with_current(const WorkbenchState& state) {
-  std::vector<Compared> all = unmoved_results(state);
-  Compared current = current_result(state);
-  if (std::ranges::find(all, current.configuration, &Compared::configuration) == all.end())
-    all.insert(all.begin(), std::move(current));
-  return all;
-}
-
-std::optional<Compared> flipped_result(const WorkbenchState& state) {
-  const auto other = flipped_settings(state);
-  if (!other) return std::nullopt;
-  // The cube is placed where the current result has it.
-  std::vector<Compared> both = {current_result(state), compared(state, *other)};
-  place_cubes_alike(state, both);
-  return both.back();
-}
-
-std::vector<int> curve_lengths(int frames) {
-  constexpr int kStep = 5;
-  std::vector<int> lengths = {frames};
-  for (int shorter = (frames - 1) / kStep * kStep; shorter >= kStep; shorter -= kStep)
-    lengths.push_back(shorter);
-  return lengths;
-}
-
-std::vector<Settings> wanted_inspections(const WorkbenchState& state) {
-  std::vector<Settings> wanted = orientation_settings(state);
-  if (!state.document.recording) return wanted;
-  PaneNeeds needs = needs_of(state.view.panes);
-  if (wants_report(state)) needs.compared = needs.lengths = true;
-  if (!needs.compared) {
-    if (const auto other = flipped_settings(state)) wanted.push_back(*other);
-    return wanted;
-  }
-  const auto want_each = [&](int frames) {
-    Settings window = state.document.settings;
-    window.frames = frames;
-    std::ranges::copy(settings_with_current(state, window), std::back_inserter(wanted));
-  };
-  want_each(state.document.settings.frames);
-  // The longest window first: the shorter ones reuse its tracks.
-  for (const int frames : curve_lengths(state.document.settings.frames))
-    if (needs.lengths && frames < state.document.settings.frames) want_each(frames);
-  return wanted;
-}
-
 bool is_frozen(const WorkbenchState& state) {
   const auto& recording = state.document.recording;
   return !state.live && recording && recording->layout == kLiveLayout && !state.live_source.empty();
 }
 
-std::vector<ShownResult> shown_results(const WorkbenchState& state) {
-  std::vector<ShownResult> shown;
-  if (!state.results.inspection) return shown;
-  const Settings& s = state.results.inspection->settings;
-  const auto add = [&](const Settings& settings, std::shared_ptr<const Inspection> inspection) {
-    const Configuration one = name_among_compared(state, settings);
-    shown.push_back({title_of(one), color_of(one), std::move(inspection), shown.empty()});
-  };
-  add(s, state.results.inspection);
-  for (const Settings& settings : compared_settings(state, s)) {
-    if (as_used(settings) == as_used(s)) continue;
-    const Surveyed* surveyed = find_surveyed(state.results.surveyed.get(), settings);
-    if (surveyed != nullptr && surveyed->inspection) add(settings, surveyed->inspection);
+void change_settings(WorkbenchState& state, Settings settings, bool dragging) {
+  Document& document = state.document;
+  if (document.recording) settings = fit_window(settings, state.frame_count());
+  const bool continues = dragging && document.dragging_settings && !document.undo.empty();
+  const Settings& before = continues ? document.undo.back().settings : document.settings;
+  if (settings.start != before.start) {
+    leave_reference_frame(state, settings, before);
+  } else if (continues) {
+    settings.exclude = before.exclude;
+    settings.mask = before.mask;
   }
-  return shown;
+  if (settings == document.settings) return;
+  if (!continues) push_undo(document);
+  document.dragging_settings = dragging;
+  document.redo.clear();
+  document.settings = std::move(settings);
+}
+
+void move_cube(WorkbenchState& state,
+               const std::optional<Vector3d>& ray,
+               int plane,
+               bool dragging) {
+  Document& document = state.document;
+  UndoStep moved = document;
+  if (ray && plane > 0)
+    moved.other_cube_rays[plane] = *ray;
+  else
+    moved.cube_ray = ray;
+  if (!ray) moved.other_cube_rays.clear();
+  if (moved.cube_ray == document.cube_ray && moved.other_cube_rays == document.other_cube_rays)
+    return;
+  if (!dragging) push_undo(document);
+  document.redo.clear();
+  document.dragging_settings = false;
+  static_cast<UndoStep&>(document) = std::move(moved);
+}
+
+void undo(WorkbenchState& state) { step_back(state, state.document.undo, state.document.redo); }
+
+void redo(WorkbenchState& state) { step_back(state, state.document.redo, state.document.undo); }
+
+bool Selection::contains(std::int64_t track) const {
+  return std::ranges::binary_search(tracks, track);
+}
+
+Selection selected(std::span<const std::int64_t> tracks) { return extended({}, tracks); }
+
+Selection toggled(Selection selection, std::int64_t track) {
+  if (!selection.contains(track)) return extended(selection, {&track, 1});
+  std::erase(selection.tracks, track);
+  if (selection.focus == track) {
+    selection.focus = std::nullopt;
+    if (!selection.tracks.empty()) selection.focus = selection.tracks.back();
+  }
+  return selection;
+}
+
+Selection extended(Selection selection, std::span<const std::int64_t> tracks) {
+  std::set<std::int64_t> all(selection.tracks.begin(), selection.tracks.end());
+  all.insert(tracks.begin(), tracks.end());
+  selection.tracks.assign(all.begin(), all.end());
+  if (!tracks.empty()) selection.focus = tracks.back();
+  return selection;
+}
+
+Selection inverted(const Selection& selection, std::span<const std::int64_t> all) {
+  std::vector<std::int64_t> others;
+  for (const std::int64_t track : all)
+    if (!selection.contains(track)) others.push_back(track);
+  return selected(others);
+}
+
+void pick_point(WorkbenchState& state, const Vector2d& raw_px) {
+  Selection& selection = state.selection;
+  if (selection.points_px.size() != 1 || selection.points_frame != state.view.frame)
+    selection.points_px.clear();
+  selection.points_frame = state.view.frame;
+  selection.points_px.push_back(raw_px);
+  say(state,
+      selection.points_px.size() == 1
+          ? "first point picked; Alt+click the second one"
+          : "two points picked; right-click the image to set their distance or the origin");
+}
+
+void close_next(WorkbenchState& state) {
+  Panes& panes = state.view.panes;
+  if (state.view.drawn_mask)
+    state.view.drawn_mask.reset();
+  else if (!state.selection.tracks.empty() || !state.selection.points_px.empty())
+    state.selection = {};
+  else if (panes.beside != nullptr)
+    panes.beside = nullptr;
+  else
+    panes.drawer = nullptr;
 }
 
 }  // namespace gpo
