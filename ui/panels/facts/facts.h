@@ -60,9 +60,6 @@ std::vector<ResultGroup> result_groups(const Inspection* inspection, bool timing
 /// the cubes is in plane distances.
 ResultGroup gravity_group(const Inspection& inspection, double cube_side);
 
-/// Returns the tooltip of a frame's bar: inliers, motion, verdict on the window that ends there.
-std::string bar_text(const Inspection& inspection, int frame);
-
 /// Returns a solver's iterations; with those of discarded attempts, which no curve shows: "42 of
 /// 110".
 std::string iterations_text(const SolverReport& solver);

@@ -35,6 +35,9 @@ struct BarArea {
   float scale;        ///< text scale
 };
 
+/// Returns the tooltip of a frame's bar: inliers, motion, verdict on the window that ends there.
+std::string bar_text(const Inspection& inspection, int frame);
+
 /// A bar per frame: inliers, colored by the verdict on the window that ends there; others above.
 void draw_tracks(const BarArea& area, const Inspection& inspection);
 

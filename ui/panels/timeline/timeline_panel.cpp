@@ -281,6 +281,32 @@ void draw_over_time(const PanelContext& ui, Rectangle bar, const StripTexts& tex
 
 }  // namespace
 
+std::string bar_text(const Inspection& inspection, int frame) {
+  const Window& window = *inspection.window;
+  const int in_window = frame - window.start;
+  std::string text = fmt::format("frame {}", frame);
+  if (in_window < 0 || in_window >= window.frame_count()) return text;
+  text += ": " + counted(window.inlier_count(in_window), "inlier");
+  if (in_window < static_cast<int>(inspection.motion.size())) {
+    const FrameMotion& motion = inspection.motion[in_window];
+    text += fmt::format("\nparallax {:.1f} px, angular rate {:.0f}\u00b0/s",
+                        motion.parallax_px,
+                        motion.rotation_rate_deg_s);
+  }
+  if (in_window == 0) return text + ". Reference frame: the window starts here";
+  const std::vector<Verdict>& growth = shown_growth(inspection);
+  if (in_window > static_cast<int>(growth.size())) return text;
+  const Verdict& verdict = growth[in_window - 1];
+  text += fmt::format("\nwindow of {} frames, {} to {}: ", in_window + 1, window.start, frame);
+  text += verdict_text(verdict) + "\n" + verdict.reason;
+  const bool whole = in_window + 1 == window.frame_count();
+  if (whole && inspection.initialization && inspection.initialization->verdict) return text;
+  text += "\n(estimated by GPO with the given rotations; ";
+  text += inspection.comparable_growth.empty() ? "image regions are not compared)"
+                                               : "at least as wide as the whole window's)";
+  return text;
+}
+
 void timeline_panel(const PanelContext& ui, const Rectangle& place) {
   const float s = ui.scale;
   const PanelScope scope("timeline", place, {12 * s, 12 * s});

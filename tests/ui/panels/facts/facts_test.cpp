@@ -8,7 +8,7 @@
 #include "engine/window/window.h"
 #include "tests/ui/made_inspection.h"
 #include "ui/look/look.h"
-#include "ui/panels/panels.h"
+#include "ui/panels/timeline/timeline_bars.h"
 #include "ui/views/report/report.h"
 
 #include <cmath>
