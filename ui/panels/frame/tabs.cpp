@@ -82,6 +82,7 @@ void more_tabs(const PanelContext& ui,
 
 /// A click on an open drawer's tab closes it; with Ctrl opens it beside the other one.
 std::string line_of_tab(const Pane& pane, const Panes& shown) {
+  if (pane.kind == PaneKind::side) return action_of(pane);
   if (shown.beside == &pane) return "view-beside off";
   if (ImGui::GetIO().KeyCtrl && shown.drawer != nullptr)
     return std::string("view-beside ") + pane.key;
@@ -89,46 +90,39 @@ std::string line_of_tab(const Pane& pane, const Panes& shown) {
   return shown.beside == nullptr ? "view no-drawer" : action_of(*shown.beside);
 }
 
-void toggle_maximized(const PanelContext& ui, WindowPart part) {
-  if (ui.state.view.division.maximized == part) part = WindowPart::none;
-  push(ui.commands, RunAction{"maximize " + std::string(to_string(part))});
-}
-
-}  // namespace
-
-void side_tabs(const PanelContext& ui, const Rectangle& place) {
-  const PanelScope scope("side tabs", place, {0, 0});
-  const Pane* shown = ui.state.view.panes.side;
-  const std::span<const Pane> panes = side_panes();
+/// Draws the tabs of panes, which a double click maximizes. `open`: null if none is.
+void draw_tabs(const PanelContext& ui,
+               const Rectangle& place,
+               std::span<const Pane> panes,
+               const Pane* open,
+               WindowPart part) {
+  const Panes& shown = ui.state.view.panes;
   const std::size_t fit = fitting_tabs(panes, place.width, ui.scale);
   for (const Pane& pane : panes.first(fit)) {
-    const bool clicked = tab(pane, shown == &pane, place.height, ui.scale);
-    const bool twice = is_item_double_clicked();
-    ImGui::SameLine(0, 0);
-    if (clicked || twice) push(ui.commands, RunAction{action_of(pane)});
-    if (twice) toggle_maximized(ui, WindowPart::side);
-  }
-  more_tabs(ui, panes.subspan(fit), shown, place.height);
-}
-
-void drawer_tabs(const PanelContext& ui, const Rectangle& place) {
-  const PanelScope scope("drawer tabs", place, {0, 0});
-  const std::span<const Pane> panes = drawers();
-  const std::size_t fit = fitting_tabs(panes, place.width, ui.scale);
-  for (const Pane& pane : panes.first(fit)) {
-    const Panes& shown = ui.state.view.panes;
-    const bool beside = shown.beside == &pane;
-    const bool open = shown.drawer == &pane || beside;
-    const bool clicked = tab(pane, open, place.height, ui.scale);
+    const bool is_open = open == &pane || shown.beside == &pane;
+    const bool clicked = tab(pane, is_open, place.height, ui.scale);
     const bool twice = is_item_double_clicked();
     ImGui::SameLine(0, 0);
     // A click closes the open drawer; the second press of a double click opens it again.
     if (clicked && !twice) push(ui.commands, RunAction{line_of_tab(pane, shown)});
     if (!twice) continue;
     push(ui.commands, RunAction{action_of(pane)});
-    toggle_maximized(ui, WindowPart::drawer);
+    const WindowPart wanted = ui.state.view.division.maximized == part ? WindowPart::none : part;
+    push(ui.commands, RunAction{std::string("maximize ") + to_string(wanted)});
   }
-  more_tabs(ui, panes.subspan(fit), ui.state.view.panes.drawer, place.height);
+  more_tabs(ui, panes.subspan(fit), open, place.height);
+}
+
+}  // namespace
+
+void side_tabs(const PanelContext& ui, const Rectangle& place) {
+  const PanelScope scope("side tabs", place, {0, 0});
+  draw_tabs(ui, place, side_panes(), ui.state.view.panes.side, WindowPart::side);
+}
+
+void drawer_tabs(const PanelContext& ui, const Rectangle& place) {
+  const PanelScope scope("drawer tabs", place, {0, 0});
+  draw_tabs(ui, place, drawers(), ui.state.view.panes.drawer, WindowPart::drawer);
 }
 
 }  // namespace gpo
