@@ -57,56 +57,49 @@ std::vector<KeyRow> key_rows(const WorkbenchState& state) {
 }
 
 /// Returns the width of a table without its wrapped column [px].
-float width_beside(std::span<const KeyRow> rows, float scale) {
+float width_beside(std::span<const KeyRow> rows, int columns, float scale) {
   float keys = 0, value = 0;
   for (const KeyRow& row : rows) {
     keys = std::max(keys, ImGui::CalcTextSize(row.keys.c_str()).x);
     value = std::max(value, ImGui::CalcTextSize(row.value.c_str()).x);
   }
-  return keys + value + 48 * scale;
-}
-float width_beside(std::span<const GlossaryTerm> rows, float scale) {
-  float term = 0;
-  for (const GlossaryTerm& row : rows)
-    term = std::max(term, ImGui::CalcTextSize(row.term.c_str()).x);
-  return term + 32 * scale;
+  return keys + value + static_cast<float>(16 * columns) * scale;
 }
 
-/// `wrap_px`: width of the wrapped column.
-void draw_key(const KeyRow& row, float wrap_px) {
+std::vector<KeyRow> glossary_rows() {
+  std::vector<KeyRow> rows;
+  for (const auto& [term, meaning] : glossary()) rows.push_back({term, meaning, "", ""});
+  return rows;
+}
+
+/// `columns`: 2 without the values. `wrap_px`: width of the wrapped column.
+void draw_help_row(const KeyRow& row, int columns, float wrap_px) {
   ImGui::TableNextColumn();
   colored_text(Role::accent, row.keys);
   ImGui::TableNextColumn();
   wrapped_text(row.title, ImGui::GetCursorPosX() + wrap_px);
   tooltip(row.tooltip);
+  if (columns == 2) return;
   ImGui::TableNextColumn();
   colored_text(row.on ? Role::good : Role::text_dim, row.value);
 }
 
-void draw_term(const GlossaryTerm& row, float wrap_px) {
-  ImGui::TableNextColumn();
-  colored_text(Role::accent, row.term);
-  ImGui::TableNextColumn();
-  wrapped_text(row.meaning, ImGui::GetCursorPosX() + wrap_px);
-}
-
 /// Draws the rows in two tables side by side, or in one if the window is too narrow for two.
-template <class Row>
-void draw_halves(std::span<const Row> rows, int columns, void (*draw)(const Row&, float), float s) {
+void draw_halves(std::span<const KeyRow> rows, int columns, float s) {
   constexpr float kWrap = 420, kLeastWrap = 200;  // [px] at scale 1
   const auto flags = ImGuiTableFlags_SizingFixedFit | ImGuiTableFlags_NoHostExtendX;
   const std::size_t half = (rows.size() + 1) / 2;
   const float room = ImGui::GetIO().DisplaySize.x - 72 * s;
-  const float of_two =
-      (room - width_beside(rows.first(half), s) - width_beside(rows.subspan(half), s)) / 2;
+  const auto beside = [&](std::span<const KeyRow> part) { return width_beside(part, columns, s); };
+  const float of_two = (room - beside(rows.first(half)) - beside(rows.subspan(half))) / 2;
   const bool two = of_two >= kLeastWrap * s;
-  const float of_one = std::max(kLeastWrap * s, room - width_beside(rows, s));
+  const float of_one = std::max(kLeastWrap * s, room - beside(rows));
   const float wrap_px = std::min(kWrap * s, two ? of_two : of_one);
-  const auto table = [&](const char* id, std::span<const Row> part) {
+  const auto table = [&](const char* id, std::span<const KeyRow> part) {
     if (!ImGui::BeginTable(id, columns, flags)) return;
-    for (const Row& row : part) {
+    for (const KeyRow& row : part) {
       ImGui::TableNextRow();
-      draw(row, wrap_px);
+      draw_help_row(row, columns, wrap_px);
     }
     ImGui::EndTable();
   };
@@ -176,11 +169,10 @@ void draw_manual(const PanelContext& ui) {
 }
 
 void draw_about() {
-  ImGui::PushFont(font(Font::bold));
-  ImGui::TextUnformatted(
-      fmt::format("GPO Inspector {}.{}.{}", GPO_VERSION_MAJOR, GPO_VERSION_MINOR, GPO_VERSION_PATCH)
-          .c_str());
-  ImGui::PopFont();
+  text_in(Font::bold,
+          color_of(Role::text),
+          fmt::format(
+              "GPO Inspector {}.{}.{}", GPO_VERSION_MAJOR, GPO_VERSION_MINOR, GPO_VERSION_PATCH));
   for (const std::string& line : build_facts()) ImGui::TextUnformatted(line.c_str());
 }
 
@@ -253,8 +245,8 @@ void help_overlay(const PanelContext& ui, const Rectangle& window) {
   draw_title(ui);
   const HelpPage page = ui.state.view.help_page;
   ImGui::PushID(static_cast<int>(page));
-  if (page == HelpPage::keys) draw_halves<KeyRow>(key_rows(ui.state), 3, draw_key, s);
-  if (page == HelpPage::glossary) draw_halves<GlossaryTerm>(glossary(), 2, draw_term, s);
+  if (page == HelpPage::keys) draw_halves(key_rows(ui.state), 3, s);
+  if (page == HelpPage::glossary) draw_halves(glossary_rows(), 2, s);
   if (page == HelpPage::manual) draw_manual(ui);
   if (page == HelpPage::about) draw_about();
   ImGui::PopID();

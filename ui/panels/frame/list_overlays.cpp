@@ -4,7 +4,6 @@
 #include "ui/panels/panels.h"
 
 #include <algorithm>
-#include <sstream>
 
 #include <fmt/format.h>
 
@@ -191,10 +190,8 @@ void draw_file(const FolderEntry& entry, bool dim, float width, float scale) {
 }
 
 void choose(const PanelContext& ui, const fs::path& path) {
-  std::ostringstream line;
-  line << ui.state.view.browse->action << " " << std::quoted(path.string());
   push(ui.commands, RunAction{"escape"});
-  push(ui.commands, RunAction{line.str()});
+  push(ui.commands, RunAction{ui.state.view.browse->action + " " + as_argument(path.string())});
 }
 
 /// Enters a folder that is no recording; chooses anything else. `row`: null if none.
