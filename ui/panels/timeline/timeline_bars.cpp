@@ -338,15 +338,16 @@ std::string scan_text(const ScannedStart& start) {
   return text;
 }
 
-void scan_strip(const PanelContext& ui, const Rectangle& place, float gutter_px) {
+void scan_strip(const PanelContext& ui,
+                const TimeAxis& axis,
+                const Rectangle& place,
+                float gutter_px) {
   const WorkbenchState& state = ui.state;
   ImDrawList& list = *ImGui::GetWindowDrawList();
   const ImVec2 from{place.x, place.y}, to{place.right(), place.bottom()};
   list.AddRectFilled(from, to, imgui_color(Role::raised));
   if (!state.results.scan) return;
   const StartScan& scan = *state.results.scan;
-  const TimeAxis axis{
-      place.x, place.right(), state.frame_count(), holding(state.view.time_span, state.view.frame)};
   const bool clicked = hit_area_at("scan", place);
   list.PushClipRect(from, to, true);
   const auto error = shown_error(scan);

@@ -92,6 +92,9 @@ std::string scan_text(const ScannedStart& start);
 
 /// A column for each scanned start in the color of its verdict; a click starts the window there. At
 /// its right, in the gutter, is what the columns show, or the progress of the scan.
-void scan_strip(const PanelContext& ui, const Rectangle& place, float gutter_px);
+void scan_strip(const PanelContext& ui,
+                const TimeAxis& axis,
+                const Rectangle& place,
+                float gutter_px);
 
 }  // namespace gpo

@@ -155,11 +155,9 @@ void handle_mouse(const PanelContext& ui, const TimeAxis& axis, float top) {
   }
 }
 
-void draw_axis(const PanelContext& ui, const Rectangle& bar) {
+void draw_axis(const PanelContext& ui, const TimeAxis& axis, const Rectangle& bar) {
   const WorkbenchState& state = ui.state;
   const float s = ui.scale;
-  const TimeAxis axis{
-      bar.x, bar.right(), state.frame_count(), holding(state.view.time_span, state.view.frame)};
   ImDrawList& list = *ImGui::GetWindowDrawList();
   list.AddRectFilled({bar.x, bar.y}, {bar.right(), bar.bottom()}, imgui_color(Role::raised));
   if (axis.frames < 1) return;
@@ -247,27 +245,24 @@ struct StripTexts {
 void draw_over_time(const PanelContext& ui, Rectangle bar, const StripTexts& texts) {
   if (bar.empty()) return;
   const float s = ui.scale;
-  if (ui.state.view.toggles.scan) {
-    const float strip = std::round(kScanHeight * s);
-    if (texts.labels)
-      label_strip(ui, "starts", {bar.x, bar.y - std::round(8 * s), bar.width, strip});
-    scan_strip(ui, {bar.x, bar.y - std::round(8 * s), bar.width, strip}, texts.gutter_px);
-    bar = {bar.x, bar.y + strip, bar.width, bar.height - strip};
+  const WorkbenchState& state = ui.state;
+  const TimeAxis axis{
+      bar.x, bar.right(), state.frame_count(), holding(state.view.time_span, state.view.frame)};
+  if (state.view.toggles.scan) {
+    const Rectangle starts{
+        bar.x, bar.y - std::round(8 * s), bar.width, std::round(kScanHeight * s)};
+    if (texts.labels) label_strip(ui, "starts", starts);
+    scan_strip(ui, axis, starts, texts.gutter_px);
+    bar.y += starts.height;
+    bar.height -= starts.height;
   }
   const float ruler = std::round(kRulerHeight * s);
   bar.height = std::max(1.0F, bar.height - ruler);
-  draw_axis(ui, bar);
+  draw_axis(ui, axis, bar);
   const Rectangle below{bar.x, bar.bottom() + std::round(2 * s), bar.width, ruler};
-  if (const Recording* recording = ui.state.document.recording.get())
-    draw_ruler({*ImGui::GetWindowDrawList(),
-                {bar.x,
-                 bar.right(),
-                 recording->frame_count(),
-                 holding(ui.state.view.time_span, ui.state.view.frame)},
-                below.y,
-                below.bottom(),
-                s},
-               recording->timestamps_ns);
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  if (const Recording* recording = state.document.recording.get())
+    draw_ruler({list, axis, below.y, below.bottom(), s}, recording->timestamps_ns);
   if (texts.labels) {
     label_strip(ui, "tracks", bar);
     label_strip(ui, "time", below);
@@ -275,8 +270,7 @@ void draw_over_time(const PanelContext& ui, Rectangle bar, const StripTexts& tex
   if (!texts.legend) return;
   const float top = below.bottom() + 2 * s;
   const float right = ImGui::GetWindowPos().x + ImGui::GetWindowSize().x - 8 * s;
-  draw_verdict_legend(
-      {*ImGui::GetWindowDrawList(), {}, top, top, s}, *ui.inspection(), bar.x, right);
+  draw_verdict_legend({list, {}, top, top, s}, *ui.inspection(), bar.x, right);
 }
 
 }  // namespace
