@@ -155,8 +155,11 @@ WindowInput::WindowInput(GLFWwindow* window) : window_(window) {
 void push_drop(const InputEvent& event, Commands& commands) {
   push(commands, OpenPath{event.path});
   if (event.code > 1)
-    push(commands,
-         Say{fmt::format("{} files were dropped: only {} is opened", event.code, event.path)});
+    push(commands, [count = event.code, path = event.path](WorkbenchState& state) {
+      say(state,
+          fmt::format("{} files were dropped: only {} is opened", count, path),
+          Severity::warning);
+    });
 }
 
 WindowInput::~WindowInput() { glfwSetWindowUserPointer(window_, nullptr); }

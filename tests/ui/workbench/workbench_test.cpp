@@ -303,7 +303,7 @@ TEST(Workbench, UndoRestoresSettingsAndWholeDrags) {
 TEST(Workbench, UndoRestoresTheCubePosition) {
   WorkbenchState state = opened(60);
   const Eigen::Vector3d there(0.1, 0.2, 1), elsewhere(0.3, 0.2, 1);
-  for (const Eigen::Vector3d& ray : {there, elsewhere}) apply(state, MoveCube{ray});
+  for (const Eigen::Vector3d& ray : {there, elsewhere}) move_cube(state, ray);
   for (const auto& [action, ray] : {std::pair{"undo", std::optional(there)},
                                     {"redo", elsewhere},
                                     {"reset-cube", std::nullopt},

@@ -35,7 +35,8 @@ std::optional<WorkbenchState> showing_after(const WorkbenchState& state) {
 }
 
 /// Names the result that the image shows in place of the current one, in its upper right corner.
-void draw_flip_label(ImDrawList& list, const ScreenRect& rect, const Compared& other) {
+void draw_flip_label(const Area& area, const Compared& other) {
+  auto& [list, rect] = area;
   const float s = overlay_scale();
   std::string text = title_of(other.configuration);
   if (!other.inspection)
@@ -96,21 +97,6 @@ void click_track(const PanelContext& ui, std::int64_t id) {
   push(ui.commands, SelectTracks{adds ? toggled(selection, id) : selected({&id, 1})});
 }
 
-/// `point` is in the reference camera's world; nullopt if the mouse is beside the plane.
-ContextSubject plane_subject(const Inspection& inspection,
-                             int number,
-                             const std::optional<Vector3d>& point) {
-  const std::string title = plane_title(inspection, number);
-  const bool known = estimated_plane(inspection, number) != nullptr;
-  return {.kind = ContextKind::plane,
-          .title = title,
-          .plane = number,
-          .ray = point,
-          .why_not_there = fmt::format("The cube cannot move here: {} {}",
-                                       title,
-                                       known ? "is not in this direction" : "has no estimate")};
-}
-
 struct Pointer {
   const PanelContext& ui;
   int frame;  ///< the one that is drawn
@@ -142,9 +128,9 @@ std::optional<LegendHit> legend_under(const Pointer& pointer) {
 }
 
 std::string legend_tooltip(const LegendHit& hit) {
-  const Action& action = action_named(hit.action);
-  return std::string(hit.action) == "legend" ? "Hides the legends; View, Legends shows them again"
-                                             : "Click to show or hide: " + action.title;
+  if (std::string_view(hit.action) == "legend")
+    return "Hides the legends; View, Legends shows them again";
+  return "Click to show or hide: " + action_named(hit.action).title;
 }
 
 void zoom_and_pan(const Pointer& pointer) {
@@ -186,7 +172,9 @@ void select(const Pointer& pointer, std::optional<std::int64_t> track) {
   if (!ImGui::IsItemDeactivated() || !ImGui::IsMouseReleased(ImGuiMouseButton_Left)) return;
   const bool clicked = is_click(ui.scale);
   if (clicked && io.KeyAlt) {
-    push(ui.commands, PickPoint{to_image(pointer.mapping, pointer.at)});
+    push(ui.commands, [raw_px = to_image(pointer.mapping, pointer.at)](WorkbenchState& state) {
+      pick_point(state, raw_px);
+    });
   } else if (clicked && track) {
     click_track(ui, *track);
   } else if (clicked && !io.KeyCtrl && !selection.tracks.empty()) {
@@ -346,12 +334,12 @@ void image_panel(const PanelContext& ui, const Rectangle& place) {
   const WorkbenchState state = showing(ui.state, *other);
   draw_panel({ui.with(state), ui.views, ui.commands, ui.banner}, place);
   const PanelScope scope("picture", place, {0, 0});
-  draw_flip_label(*ImGui::GetWindowDrawList(), screen_rect(place), *other);
+  draw_flip_label({*ImGui::GetWindowDrawList(), screen_rect(place)}, *other);
 }
 
 /// The image without controls, for screenshots, snapshots and movies.
 void image_alone(const PanelContext& ui, const Rectangle& place) {
-  ImDrawList& list = *ImGui::GetBackgroundDrawList();
+  const Area area{*ImGui::GetBackgroundDrawList(), screen_rect(place)};
   const auto other = flipped_result(ui.state);
   const auto after = other ? std::nullopt : showing_after(ui.state);
   const Inspection* inspection = other   ? other->inspection.get()
@@ -361,10 +349,8 @@ void image_alone(const PanelContext& ui, const Rectangle& place) {
   const int frame = update_image(ui);
   const ViewOptions options =
       view_options(ui.with(other ? showing(ui.state, *other) : ui.state), ui.views);
-  draw_image_view({list, screen_rect(place)},
-                  {inspection ? *inspection : empty, frame, options},
-                  shown_image(ui.views));
-  if (other) draw_flip_label(list, screen_rect(place), *other);
+  draw_image_view(area, {inspection ? *inspection : empty, frame, options}, shown_image(ui.views));
+  if (other) draw_flip_label(area, *other);
 }
 
 void scene_pane(const PanelContext& ui, const Rectangle& place) {

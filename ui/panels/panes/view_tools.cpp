@@ -58,8 +58,10 @@ bool drag(const PanelContext& ui, const Vector2d& pixel, const CubeView& view) {
   const Vector2d from(kept.values.GetFloat(kept.x), kept.values.GetFloat(kept.y));
   const auto point = view.on_plane(pixel + from, *plane);
   if (!point) return true;
-  const bool leads = number == inspection.window->leader;
-  push(ui.commands, MoveCube{*point, leads ? 0 : number + 1, dragged});
+  const int moved = number == inspection.window->leader ? 0 : number + 1;
+  push(ui.commands, [to = *point, moved, dragged](WorkbenchState& state) {
+    move_cube(state, to, moved, dragged);
+  });
   kept.values.SetBool(kept.dragged, true);
   return true;
 }

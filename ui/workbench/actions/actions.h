@@ -128,21 +128,6 @@ struct SetCubeSide {
   double side;
   void operator()(WorkbenchState& s) const { s.document.cube_side = std::clamp(side, 0.0, 2.0); }
 };
-/// Moves a plane's cube to where the ray of the reference camera meets it, see `move_cube`.
-struct MoveCube {
-  std::optional<Vector3d> ray;
-  int plane = 0;
-  bool dragging = false;
-  void operator()(WorkbenchState& state) const { move_cube(state, ray, plane, dragging); }
-};
-struct PickPoint {
-  Vector2d raw_px;
-  void operator()(WorkbenchState& state) const { pick_point(state, raw_px); }
-};
-struct Say {
-  std::string text;
-  void operator()(WorkbenchState& state) const { say(state, text, Severity::warning); }
-};
 template <class T, T ViewState::*member>
 struct SetView {
   T value;

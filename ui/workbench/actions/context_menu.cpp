@@ -114,6 +114,20 @@ std::string as_argument(const std::string& text) {
   return quoted.str();
 }
 
+ContextSubject plane_subject(const Inspection& inspection,
+                             int number,
+                             const std::optional<Vector3d>& point) {
+  const std::string title = plane_title(inspection, number);
+  const bool known = estimated_plane(inspection, number) != nullptr;
+  return {.kind = ContextKind::plane,
+          .title = title,
+          .plane = number,
+          .ray = point,
+          .why_not_there = fmt::format("The cube cannot move here: {} {}",
+                                       title,
+                                       known ? "is not in this direction" : "has no estimate")};
+}
+
 ContextSubject point_subject(const Vector2d& raw_px) {
   ContextSubject subject{.kind = ContextKind::point, .title = "Points for scale and origin"};
   subject.raw_px = raw_px;

@@ -34,6 +34,12 @@ std::span<const ContextEntry> context_entries();
 /// Returns a text as one argument of a script's line.
 std::string as_argument(const std::string& text);
 
+/// The subject of a plane. `point` is in the reference camera's world; nullopt if the mouse is
+/// beside the plane.
+ContextSubject plane_subject(const Inspection& inspection,
+                             int number,
+                             const std::optional<Vector3d>& point);
+
 /// The subject of a pixel of the current frame.
 ContextSubject point_subject(const Vector2d& raw_px);
 
