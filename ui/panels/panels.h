@@ -8,7 +8,6 @@
 #include "ui/views/normals/normals_view.h"
 #include "ui/views/scene/scene_view.h"
 #include "ui/workbench/actions/actions.h"
-#include "ui/workbench/actions/context_menu.h"
 #include "ui/workbench/work/disk_readers.h"
 #include "ui/workbench/work/worker.h"
 

@@ -14,6 +14,29 @@ namespace {
 
 using Value = std::optional<double>;
 
+constexpr ComparedColumn kMetrics[] = {
+    {.title = "PNE",
+     .meaning = "Plane normal error: angle to the true normal, in the reference camera",
+     .unit = "deg",
+     .text = angle_text,
+     .evaluated = &Evaluation::pne_deg},
+    {.title = "PNE aligned",
+     .meaning = "Plane normal error after alignment of the camera paths, as in the paper",
+     .unit = "deg",
+     .text = angle_text,
+     .evaluated = &Evaluation::pne_aligned_deg},
+    {.title = "PDE",
+     .meaning = "Plane distance error: from the reference camera, in the scale of the alignment",
+     .unit = "m",
+     .text = length_text,
+     .evaluated = &Evaluation::pde_m},
+    {.title = "ATE",
+     .meaning =
+         "Absolute trajectory error: RMS distance of the aligned camera centers to the true ones",
+     .unit = "m",
+     .text = length_text,
+     .evaluated = &Evaluation::ate_m}};
+
 std::string count_text(double value) { return fmt::format("{:.0f}", value); }
 std::string px_text(double value) { return number_text(value, 3) + " px"; }
 
@@ -228,6 +251,8 @@ std::string cell(const std::optional<double>& value) {
 }
 
 }  // namespace
+
+std::span<const ComparedColumn> metrics() { return kMetrics; }
 
 std::span<const ComparedColumn> compared_columns() {
   static const std::vector<ComparedColumn> columns = make_columns();

@@ -56,10 +56,6 @@ std::vector<std::vector<Vector2d>> distortion_grid(const Camera& camera, int cel
 /// Returns the results (null: none yet), times only with `timings`. `side`: cube's; 0: default.
 std::vector<ResultGroup> result_groups(const Inspection* inspection, bool timings, double side = 0);
 
-/// Returns gravity and the metric scale, with the planes' tilts if gravity is known; the side of
-/// the cubes is in plane distances.
-ResultGroup gravity_group(const Inspection& inspection, double cube_side);
-
 /// Returns a solver's iterations; with those of discarded attempts, which no curve shows: "42 of
 /// 110".
 std::string iterations_text(const SolverReport& solver);

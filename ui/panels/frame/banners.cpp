@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The line above the views: why the window has no result, or what a live source lacks.
 #include "ui/panels/panels.h"
-#include "ui/workbench/work/live_session.h"
+#include "ui/workbench/work/live_host.h"
 
 namespace gpo {
 namespace {

@@ -4,7 +4,6 @@
 
 #include "engine/inspection/studies/studies.h"
 #include "ui/views/image/image_geometry.h"
-#include "ui/views/image/image_geometry.h"
 
 #include <array>
 #include <functional>

@@ -1,6 +1,6 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "ui/workbench/actions/context_menu.h"
+#include "ui/workbench/actions/actions.h"
 
 #include "engine/inspection/studies/studies.h"
 

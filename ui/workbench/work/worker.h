@@ -3,7 +3,6 @@
 #pragma once
 
 #include "ui/workbench/state.h"
-#include "ui/workbench/work/extrapolator.h"
 #include "ui/workbench/work/task_queue.h"
 
 #include <functional>
@@ -76,6 +75,37 @@ class Scan {
   std::vector<std::shared_ptr<const StartScan>> cache_;  ///< the one requested last is the last one
   BackgroundJob job_;
 };
+
+/// Locates cameras after a window in the background. Thread-safe.
+class Extrapolator {
+ public:
+  /// `changed` is called on the job's thread after a result.
+  explicit Extrapolator(std::function<void()> changed = {});
+
+  /// Requests the cameras after a window up to a frame of the recording; null: none. A result that
+  /// reaches the frame or ends before it is kept. Otherwise twice as many frames are located,
+  /// because the front end follows its tracks from the start of the window again.
+  void want(const std::shared_ptr<const Inspection>& inspection, int frame);
+
+  JobStatus status() const { return locked_status(job_); }
+  /// For the requested inspection; null: none.
+  std::shared_ptr<const Extrapolation> latest() const { return locked(job_, latest_); }
+
+ private:
+  BackgroundJob::Job next();
+
+  std::shared_ptr<const Inspection> wanted_;  ///< null: none
+  int frames_ = 0;                            ///< after the window; 0: none are requested
+  std::shared_ptr<const Extrapolation> latest_;
+  BackgroundJob job_;
+};
+
+/// Requests the cameras after the current window if the current frame is there, takes over those
+/// that are known, and returns the progress. `published` is the window before its cubes were moved;
+/// null: none is requested.
+JobStatus follow_window(WorkbenchState& state,
+                        const std::shared_ptr<const Inspection>& published,
+                        Extrapolator& extrapolator);
 
 /// The published results of the worker, immutable. `generation` grows with each publication.
 struct Published {
