@@ -144,13 +144,6 @@ ResultGroup timing_group(const Timing& timing, bool timings) {
   return group;
 }
 
-ResultGroup unknown_group(std::string title, std::initializer_list<const char*> labels) {
-  ResultGroup group{std::move(title), {}};
-  for (const char* label : labels)
-    group.rows.push_back(dash(label, "Unknown: nothing has been computed yet"));
-  return group;
-}
-
 const char* rotations_note(RotationModel model) {
   if (model == RotationModel::known) return "rotations fixed";
   return model == RotationModel::bias ? "gyro bias unknown" : "rotations unknown";
@@ -364,15 +357,13 @@ std::pair<std::string, std::string> value_and_uncertainty(const std::string& val
 }
 
 std::vector<ResultGroup> result_groups(const Inspection* inspection, bool timings, double side) {
-  if (!inspection || !inspection->initialization || !inspection->window)
-    return {unknown_group("ERROR AGAINST GROUND TRUTH", {"PNE", "PNE aligned", "PDE", "ATE"}),
-            unknown_group("RESULT", {"Inliers", kTransferRms, "Iterations"}),
-            unknown_group(kMotionTitle, {"Rotation alone", "Baseline |t|"}),
-            unknown_group(
-                "UNCERTAINTY",
-                {"Normal", "Distance ratio", "Bound, known rotations", "Bound, unknown bias"}),
-            unknown_group(kTimeTitle,
-                          {"Track", "RANSAC", "Rotations", "Initialize", "Solver", "Total"})};
+  if (!inspection || !inspection->initialization || !inspection->window) {
+    std::vector<ResultGroup> unknown;
+    for (const char* title :
+         {"ERROR AGAINST GROUND TRUTH", "RESULT", kMotionTitle, "UNCERTAINTY", kTimeTitle})
+      unknown.push_back({title, {dash("", "Unknown: nothing has been computed yet")}});
+    return unknown;
+  }
   // The most important rows come first: a window of 1280x720 shows no others without scrolling.
   std::vector<ResultGroup> groups{metrics_group(*inspection),
                                   result_group(*inspection),

@@ -35,7 +35,6 @@ std::string why_no_values(const ResultGroup& group);
 /// Splits "0.912 ±0.004 rad/s" into "0.912" and "±0.004 rad/s"; either may be empty.
 std::pair<std::string, std::string> value_and_uncertainty(const std::string& value);
 
-constexpr const char* kVerdictTitle = "VERDICT";
 constexpr const char* kMotionTitle = "MOTION";
 constexpr const char* kTimeTitle = "TIME";
 constexpr const char* kNoTimes = "Screenshots omit times to remain comparable";

@@ -350,7 +350,7 @@ void verdict_panel(const PanelContext& ui, const Rectangle& place) {
   const float left = ImGui::GetCursorPosX();
   const RowPlace rows{left, left + ImGui::GetContentRegionAvail().x, std::round(8 * s)};
   const Initialization* result = ui.inspection() ? ui.inspection()->initialization.get() : nullptr;
-  heading(kVerdictTitle);
+  heading("VERDICT");
   draw_state(ui, rows.right);
   if (result != nullptr)
     draw_verdict(ui, *result, rows);
