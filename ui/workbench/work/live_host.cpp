@@ -17,6 +17,9 @@
 namespace gpo {
 namespace {
 
+/// Time for which a source that broke off is connected again.
+constexpr double kGiveUp_s = 60;
+
 /// Length of a window up to which the reason for its start is shown.
 constexpr int kFramesAfterStart = 20;
 
@@ -47,16 +50,28 @@ void refuse_while_live(WorkbenchState& state) {
     say(state, "Freeze the images with Space first", Severity::warning);
 }
 
+/// Closes the open recording, whose settings are kept for the next time, and sets the window of the
+/// one that is shown next.
+void replace_recording(WorkbenchState& state, const FrameSpan& window) {
+  Document& document = state.document;
+  if (document.recording && document.recording->layout != kLiveLayout)
+    document.earlier[document.recording->path] = document.settings;
+  document.recording.reset();
+  document.settings.start = window.start;
+  document.settings.frames = window.frames;
+}
+
 }  // namespace
 
 LiveSession::LiveSession(SourceAddress address,
-                         const LiveSessionOptions& options,
+                         const LiveHooks& hooks,
+                         double seconds,
                          const std::function<void()>& changed)
     : address_(std::move(address)),
-      camera_of_(options.camera_of),
+      camera_of_(hooks.camera_of),
       changed_(changed),
-      capture_(address_, options.capture, changed),
-      window_({.address = address_.text, .device = ""}, options.window),
+      capture_(address_, {.give_up_s = kGiveUp_s, .clock = hooks.clock}, changed),
+      window_({.address = address_.text, .device = ""}, {.seconds = seconds}),
       job_([this] { return next(); }, changed) {
   tracker_ = std::jthread([this](const std::stop_token& stop) { track(stop); });
 }
@@ -150,15 +165,6 @@ std::optional<LiveWindow::Frozen> LiveSession::freeze() {
   return window_.frozen();
 }
 
-void replace_recording(WorkbenchState& state, const FrameSpan& window) {
-  Document& document = state.document;
-  if (document.recording && document.recording->layout != kLiveLayout)
-    document.earlier[document.recording->path] = document.settings;
-  document.recording.reset();
-  document.settings.start = window.start;
-  document.settings.frames = window.frames;
-}
-
 void show_live(WorkbenchState& state, const LiveView& view) {
   const bool shown = state.live && state.live->answer;
   const int window_before = shown ? state.live->answer->task.window : 0;
@@ -241,7 +247,6 @@ void LiveHost::open(WorkbenchState& state,
                     WorkerLink& link,
                     Worker& worker,
                     const std::string& address) {
-  constexpr double kGiveUp_s = 60;
   try {
     if (!hooks.source)
       throw InputError(address + ": only a user at the window opens cameras and streams");
@@ -256,11 +261,8 @@ void LiveHost::open(WorkbenchState& state,
     frozen_.reset();
     reported_.reset();
     delays_s_.clear();
-    LiveSessionOptions options{.camera_of = hooks.camera_of};
-    options.capture.give_up_s = kGiveUp_s;
-    options.capture.clock = hooks.clock;
-    options.window.seconds = state.view.toggles.live_seconds;
-    session_ = std::make_unique<LiveSession>(source, options, changed_);
+    session_ =
+        std::make_unique<LiveSession>(source, hooks, state.view.toggles.live_seconds, changed_);
     state.view.playing = false;
     address_ = address;
   } catch (const InputError& error) {

@@ -20,20 +20,27 @@ namespace gpo {
 using LiveCameraOf = std::function<std::optional<LiveCamera>(
     const SourceAddress& address, const std::string& device, cv::Size size)>;
 
-struct LiveSessionOptions {
+/// The program's functions for live sources.
+struct LiveHooks {
+  /// Returns the source of an address that the user typed or chose. Throws InputError. Null: none
+  /// is opened.
+  std::function<SourceAddress(const std::string& address)> source = {};
   LiveCameraOf camera_of = {};  ///< null: every camera is guessed
-  CaptureOptions capture = {};
-  LiveWindowOptions window = {};
+  /// Makes a frozen source an open recording.
+  std::function<Worker::Opened(std::shared_ptr<const Recording>)> opened = Worker::with_inspector;
+  LiveClock clock = real_clock();
 };
 
 /// Tracks and inspects a live source: capture, tracking and solving each on a thread of their own.
 /// Images are dropped rather than late, and of the windows only the newest is solved. Thread-safe.
 class LiveSession {
  public:
-  /// `changed` is called on other threads when there is a new answer or state.
+  /// Keeps the last `seconds`. `changed` is called on other threads when there is a new answer or
+  /// state.
   LiveSession(SourceAddress address,
-              const LiveSessionOptions& options,
-              const std::function<void()>& changed = {});
+              const LiveHooks& hooks,
+              double seconds,
+              const std::function<void()>& changed);
   ~LiveSession();
   LiveSession(const LiveSession&) = delete;
   LiveSession& operator=(const LiveSession&) = delete;
@@ -65,17 +72,6 @@ class LiveSession {
   LiveView view_;
   BackgroundJob job_;
   std::jthread tracker_;  ///< last, so that it ends first
-};
-
-/// The program's functions for live sources.
-struct LiveHooks {
-  /// Returns the source of an address that the user typed or chose. Throws InputError. Null: none
-  /// is opened.
-  std::function<SourceAddress(const std::string& address)> source = {};
-  LiveCameraOf camera_of = {};
-  /// Makes a frozen source an open recording.
-  std::function<Worker::Opened(std::shared_ptr<const Recording>)> opened = Worker::with_inspector;
-  LiveClock clock = real_clock();
 };
 
 /// The live source of a window: opens it on request, shows it, and freezes it as a recording.
@@ -111,10 +107,6 @@ class LiveHost {
   std::int64_t noted_ns_ = 0;    ///< arrival of the last image in `delays_s_`
   std::deque<double> delays_s_;  ///< delays of up to 61 images
 };
-
-/// Closes the open recording, whose settings are kept for the next time, and sets the window of the
-/// one that is shown next.
-void replace_recording(WorkbenchState& state, const FrameSpan& window);
 
 /// Shows a live source: its window is the recording, and its newest image the current frame.
 void show_live(WorkbenchState& state, const LiveView& view);

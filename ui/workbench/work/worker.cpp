@@ -131,6 +131,30 @@ bool scan_for_starts(WorkbenchState& state, WorkerLink& link, Scan& scan) {
   return go_to_found_start(state, link);
 }
 
+/// Returns the task that reads results of `evaluate` or a session. Without `read_methods` only
+/// `methods` are known.
+FileReader::Task reading_of(const fs::path& file,
+                            const MethodTable& methods,
+                            const ReadMethods& read_methods) {
+  return [file, known = SessionMethods{methods}, read_methods](const Progress& progress) {
+    progress("reading " + file.filename().string(), 0, 0);
+    ReadFile read{file};
+    try {
+      // By its name, too: then the error names the missing column, not a video.
+      if (file.filename() == "results.csv" || is_results(file)) {
+        read.rows = std::make_shared<const std::vector<Row>>(read_results(file, known.table));
+      } else if (is_session(file)) {
+        const SessionMethods of_session = read_methods ? read_methods(file) : known;
+        read.session = read_session(file, of_session.table);
+        read.add_methods = of_session.add;
+      }
+    } catch (const std::exception& error) {
+      read.error = message_of(error);
+    }
+    return read;
+  };
+}
+
 /// Stops to read a file, and drops one that has been read.
 void stop_reading(WorkerLink& link) {
   link.reader->cancel();
@@ -201,28 +225,6 @@ void cancel(WorkbenchState& state, WorkerLink& link, Worker& worker) {
 }
 
 }  // namespace
-
-FileReader::Task reading_of(const fs::path& file,
-                            const MethodTable& methods,
-                            const ReadMethods& read_methods) {
-  return [file, known = SessionMethods{methods}, read_methods](const Progress& progress) {
-    progress("reading " + file.filename().string(), 0, 0);
-    ReadFile read{file};
-    try {
-      // By its name, too: then the error names the missing column, not a video.
-      if (file.filename() == "results.csv" || is_results(file)) {
-        read.rows = std::make_shared<const std::vector<Row>>(read_results(file, known.table));
-      } else if (is_session(file)) {
-        const SessionMethods of_session = read_methods ? read_methods(file) : known;
-        read.session = read_session(file, of_session.table);
-        read.add_methods = of_session.add;
-      }
-    } catch (const std::exception& error) {
-      read.error = message_of(error);
-    }
-    return read;
-  };
-}
 
 Worker::Opened Worker::with_inspector(std::shared_ptr<const Recording> recording) {
   const auto inspector = std::make_shared<Inspector>(recording);

@@ -198,12 +198,6 @@ using FileReader = TaskQueue<ReadFile>;
 /// Reads the methods of a session; may throw InputError.
 using ReadMethods = std::function<SessionMethods(const fs::path& session)>;
 
-/// Returns the task that reads results of `evaluate` or a session. Without `read_methods` only
-/// `methods` are known.
-FileReader::Task reading_of(const fs::path& file,
-                            const MethodTable& methods,
-                            const ReadMethods& read_methods);
-
 /// Returns the earliest ready start of a recording; null if none, or if an earlier one may come.
 const ScannedStart* first_ready(const StartScan& scan);
 
