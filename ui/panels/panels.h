@@ -151,6 +151,14 @@ struct TrackPatch {
   bool empty = true;  ///< there is no image
 };
 
+/// The cube that the mouse pressed and may drag.
+struct PressedCube {
+  std::optional<int> plane = {};  ///< number; nullopt: none
+  Eigen::Vector2f center_px =
+      Eigen::Vector2f::Zero();  ///< center of its base, relative to the mouse
+  bool dragged = false;
+};
+
 /// Caches of the views, most of them in graphics memory. Needs its OpenGL context.
 struct Views {
   ImageTexture image;
@@ -175,6 +183,7 @@ struct Views {
       tracks;  ///< in the order of the list
   Cached<std::shared_ptr<const Recording>, std::vector<ResultGroup>> recording_groups;
   NormalsMap normals;
+  PressedCube pressed;
   WindowImage window;
   float verdict_height = 0, settings_height = 0;  ///< content heights [px]; 0: unknown
   std::vector<ContextSubject> context;            ///< subjects of the open context menu
@@ -283,9 +292,6 @@ struct ManualLine {
 
 /// Returns the paragraphs of ui/README.md for users, without marks; it is embedded, too.
 const std::vector<ManualLine>& manual();
-
-/// Returns compiler and libraries, a line each.
-std::vector<std::string> build_facts();
 
 /// Returns the rows of ui/GLOSSARY.md, which is embedded into the program.
 const std::vector<GlossaryTerm>& glossary();

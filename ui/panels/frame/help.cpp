@@ -173,7 +173,9 @@ void draw_about() {
           color_of(Role::text),
           fmt::format(
               "GPO Inspector {}.{}.{}", GPO_VERSION_MAJOR, GPO_VERSION_MINOR, GPO_VERSION_PATCH));
-  for (const std::string& line : build_facts()) ImGui::TextUnformatted(line.c_str());
+  for (const char* line :
+       {"built by " GPO_COMPILER ", C++20", "Dear ImGui " IMGUI_VERSION, "License: BSD-3-Clause"})
+    ImGui::TextUnformatted(line);
 }
 
 /// Removes the marks of links, emphasis and code.
@@ -219,12 +221,6 @@ const std::vector<ManualLine>& manual() {
     return all;
   }();
   return lines;
-}
-
-std::vector<std::string> build_facts() {
-  return {"built by " GPO_COMPILER ", C++20",
-          fmt::format("Dear ImGui {}", IMGUI_VERSION),
-          "License: BSD-3-Clause"};
 }
 
 void help_overlay(const PanelContext& ui, const Rectangle& window) {

@@ -21,47 +21,33 @@ struct CubeView {
   std::function<std::optional<Vector3d>(const Vector2d& pixel, const Plane& plane)> on_plane;
 };
 
-/// The pressed cube, kept by ImGui while the mouse is down.
-struct KeptPress {
-  ImGuiStorage& values = *ImGui::GetStateStorage();
-  ImGuiID number = ImGui::GetID("pressed cube"), dragged = ImGui::GetID("dragged");
-  ImGuiID x = ImGui::GetID("center x"), y = ImGui::GetID("center y");
-};
-
-/// Remembers which cube was pressed, and how far from the center of its base.
-void press(const PanelContext& ui, const Vector2d& pixel, const CubeView& view) {
-  const KeptPress kept;
-  kept.values.SetInt(kept.number, 0);
-  kept.values.SetBool(kept.dragged, false);
+/// Returns which cube is pressed, and how far from the center of its base.
+PressedCube pressed_at(const PanelContext& ui, const Vector2d& pixel, const CubeView& view) {
   const ImGuiIO& io = ImGui::GetIO();
   const Inspection& inspection = *ui.inspection();
-  if (!io.MouseDown[ImGuiMouseButton_Left] || io.KeyShift || io.KeyAlt) return;
-  if (!ui.state.view.toggles.cube) return;
+  if (!io.MouseDown[ImGuiMouseButton_Left] || io.KeyShift || io.KeyAlt) return {};
+  if (!ui.state.view.toggles.cube) return {};
   const auto cube = view.cube_at(pixel);
   const auto center = cube ? view.pixel_of(base_center(inspection, *cube)) : std::nullopt;
-  if (!center) return;
-  kept.values.SetInt(kept.number, cube->plane.value_or(inspection.window->leader) + 1);
-  kept.values.SetFloat(kept.x, static_cast<float>(center->x() - pixel.x()));
-  kept.values.SetFloat(kept.y, static_cast<float>(center->y() - pixel.y()));
+  if (!center) return {};
+  return {cube->plane.value_or(inspection.window->leader), (*center - pixel).cast<float>()};
 }
 
 bool drag(const PanelContext& ui, const Vector2d& pixel, const CubeView& view) {
-  if (ImGui::IsItemActivated()) press(ui, pixel, view);
-  const KeptPress kept;
+  PressedCube& pressed = ui.views.pressed;
+  if (ImGui::IsItemActivated()) pressed = pressed_at(ui, pixel, view);
+  if (!pressed.plane) return false;
   const Inspection& inspection = *ui.inspection();
-  const int number = kept.values.GetInt(kept.number) - 1;
-  if (number < 0) return false;
-  const bool dragged = kept.values.GetBool(kept.dragged);
-  const Plane* plane = estimated_plane(inspection, number);
-  if (plane == nullptr || drag_px().isZero() || (!dragged && is_click(ui.scale))) return true;
-  const Vector2d from(kept.values.GetFloat(kept.x), kept.values.GetFloat(kept.y));
-  const auto point = view.on_plane(pixel + from, *plane);
+  const Plane* plane = estimated_plane(inspection, *pressed.plane);
+  if (plane == nullptr || drag_px().isZero() || (!pressed.dragged && is_click(ui.scale)))
+    return true;
+  const auto point = view.on_plane(pixel + pressed.center_px.cast<double>(), *plane);
   if (!point) return true;
-  const int moved = number == inspection.window->leader ? 0 : number + 1;
-  push(ui.commands, [to = *point, moved, dragged](WorkbenchState& state) {
-    move_cube(state, to, moved, dragged);
-  });
-  kept.values.SetBool(kept.dragged, true);
+  const bool leads = *pressed.plane == inspection.window->leader;
+  push(ui.commands,
+       [to = *point, number = leads ? 0 : *pressed.plane + 1, again = pressed.dragged](
+           WorkbenchState& state) { move_cube(state, to, number, again); });
+  pressed.dragged = true;
   return true;
 }
 
