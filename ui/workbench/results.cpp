@@ -160,15 +160,13 @@ std::vector<Settings> wanted_inspections(const WorkbenchState& state) {
     if (const auto other = flipped_settings(state)) wanted.push_back(*other);
     return wanted;
   }
-  const auto want_each = [&](int frames) {
-    Settings window = state.document.settings;
+  // The longest window first: the shorter ones reuse its tracks.
+  Settings window = state.document.settings;
+  for (const int frames : curve_lengths(window.frames)) {
+    if (!needs.lengths && frames < state.document.settings.frames) break;
     window.frames = frames;
     std::ranges::copy(settings_with_current(state, window), std::back_inserter(wanted));
-  };
-  want_each(state.document.settings.frames);
-  // The longest window first: the shorter ones reuse its tracks.
-  for (const int frames : curve_lengths(state.document.settings.frames))
-    if (needs.lengths && frames < state.document.settings.frames) want_each(frames);
+  }
   return wanted;
 }
 

@@ -370,11 +370,6 @@ void add_compare_actions(std::vector<Action>& table) {
   add_curves(menu.anytime());
 }
 
-void add_layout_actions(std::vector<Action>& table) {
-  add_parts(MenuRows{table, "View", "Parts of the window"}.anytime());
-  add_text_sizes(MenuRows{table, "View", "Theme and text"}.anytime());
-}
-
 }  // namespace
 
 void add_view_actions(std::vector<Action>& table) {
@@ -389,7 +384,8 @@ void add_view_actions(std::vector<Action>& table) {
   add_choices<Theme>(MenuRows{table, "View", "Theme and text"}.anytime(),
                      "theme ",
                      [](State& s) -> Theme& { return s.view.theme; });
-  add_layout_actions(table);
+  add_parts(MenuRows{table, "View", "Parts of the window"}.anytime());
+  add_text_sizes(MenuRows{table, "View", "Theme and text"}.anytime());
 }
 
 }  // namespace gpo
