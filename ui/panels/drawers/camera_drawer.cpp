@@ -1,7 +1,6 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
 // The recording's camera and sensors, the lens as a grid, and the report of a calibration.
-#include "ui/panels/facts/facts.h"
 #include "ui/panels/panels.h"
 
 #include <algorithm>

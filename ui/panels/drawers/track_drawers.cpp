@@ -95,9 +95,7 @@ cv::Mat patch_at(const cv::Mat& image, const Vector2d& raw_px, int quarter_turns
   const Eigen::Vector2f at = raw_px.cast<float>();
   cv::getRectSubPix(image, {kPatch_px, kPatch_px}, {at.x(), at.y()}, patch);
   cv::resize(patch, patch, {}, kMagnification, kMagnification, cv::INTER_NEAREST);
-  constexpr std::array kCodes = {
-      cv::ROTATE_90_CLOCKWISE, cv::ROTATE_180, cv::ROTATE_90_COUNTERCLOCKWISE};
-  if (quarter_turns > 0) cv::rotate(patch, patch, kCodes[quarter_turns - 1]);
+  if (quarter_turns > 0) cv::rotate(patch, patch, quarter_turns - 1);  // 0: a quarter clockwise
   return patch;
 }
 

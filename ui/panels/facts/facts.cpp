@@ -2,13 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ui/panels/facts/facts.h"
 
-#include "engine/base/error.h"
 #include "engine/evaluation/evaluation.h"
 #include "engine/geometry/statistics.h"
-#include "engine/methods/methods.h"
 #include "engine/recording/board/board.h"
-#include "engine/recording/layouts/open_recording.h"
-#include "engine/window/timestamps.h"
 #include "ui/views/image/image_view.h"
 
 #include <algorithm>

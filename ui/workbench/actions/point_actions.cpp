@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The commands that take points of the image: scale, origin, cubes.
 #include "engine/base/error.h"
-#include "engine/inspection/inspection.h"
 #include "engine/inspection/studies/studies.h"
 #include "ui/workbench/actions/actions.h"
 

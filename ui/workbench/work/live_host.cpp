@@ -3,9 +3,7 @@
 #include "ui/workbench/work/live_host.h"
 
 #include "engine/base/error.h"
-#include "engine/base/stop.h"
 #include "engine/geometry/statistics.h"
-#include "engine/recording/layouts/write_recording.h"
 #include "engine/recording/live/sources.h"
 #include "ui/workbench/session/session_file.h"
 
