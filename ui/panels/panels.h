@@ -184,6 +184,7 @@ struct Views {
   Cached<std::shared_ptr<const Recording>, std::vector<ResultGroup>> recording_groups;
   NormalsMap normals;
   PressedCube pressed;
+  TableOrder order;  ///< order of the compared results
   WindowImage window;
   float verdict_height = 0, settings_height = 0;  ///< content heights [px]; 0: unknown
   std::vector<ContextSubject> context;            ///< subjects of the open context menu

@@ -50,12 +50,7 @@ void number_header(int index, const ComparedColumn& column, TableOrder& order) {
     order = order.descending ? TableOrder{} : TableOrder{index, true};
 }
 
-/// Draws the header. Dear ImGui's window stores the order: column + 1, negative if descending.
-TableOrder header(const std::vector<ComparedRow>& rows) {
-  ImGuiStorage& storage = *ImGui::GetStateStorage();
-  const ImGuiID id = ImGui::GetID("order");
-  const int stored = storage.GetInt(id);
-  TableOrder order{std::abs(stored) - 1, stored < 0};
+void header(const std::vector<ComparedRow>& rows, TableOrder& order) {
   const float width =
       widest_px(rows, [](const ComparedRow& row) { return title_of(row.configuration); });
   ImGui::TableSetupScrollFreeze(1, 1);
@@ -70,8 +65,6 @@ TableOrder header(const std::vector<ComparedRow>& rows) {
   header_cell("Status", "Success or failure, and the method's verdict on the window");
   int index = 0;
   for (const ComparedColumn& column : compared_columns()) number_header(index++, column, order);
-  storage.SetInt(id, order.descending ? -order.column - 1 : order.column + 1);
-  return order;
 }
 
 void copy_menu(const std::vector<ComparedRow>& rows) {
@@ -267,9 +260,9 @@ void table_drawer(const PanelContext& ui, const Rectangle& place) {
   ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, {8 * s, 1});
   ImGui::PushStyleVar(ImGuiStyleVar_CellPadding, {9 * s, 3 * s});
   if (ImGui::BeginTable("compared", columns, flags, {place.width - 12 * s, place.height - 6 * s})) {
-    const TableOrder order = header(rows);
+    header(rows, ui.views.order);
     const Configuration current = name_among_compared(ui.state, ui.state.document.settings);
-    for (const std::size_t i : in_order(rows, order))
+    for (const std::size_t i : in_order(rows, ui.views.order))
       draw_row(rows[i], results[i], rows[i].configuration == current, ui.commands);
     copy_menu(rows);
     ImGui::EndTable();
