@@ -122,28 +122,23 @@ ImageTexture* shown_image(Views& views) {
   return loaded ? &views.image : nullptr;
 }
 
-ModelReader::ModelReader(std::function<void()> changed)
-    : job_([this] { return next(); }, std::move(changed)) {}
-
 std::optional<LoadedModel> ModelReader::get(const std::string& name) {
-  const auto lock = job_.lock();
   if (name != wanted_) {
-    job_.cancel();
     wanted_ = name;
+    queue_.cancel();
+    queue_.take();  // a model that is no longer wanted
     model_.reset();
-    if (name.empty()) model_.emplace();
-    job_.wake();
+    if (name.empty())
+      model_.emplace();
+    else
+      queue_.add([name](const Progress& progress) {
+        progress("reading " + fs::path(name).filename().string(), 0, 0);
+        return load_model(name);
+      });
+  } else if (std::vector<LoadedModel> read = queue_.take(); !read.empty()) {
+    model_ = std::move(read.front());
   }
   return model_;
-}
-
-BackgroundJob::Job ModelReader::next() {
-  if (model_) return nullptr;
-  return [this, name = wanted_](const std::stop_token& stop) {
-    job_.report(stop, "reading " + fs::path(name).filename().string(), 0, 0);
-    LoadedModel model = load_model(name);
-    job_.publish(stop, [&] { model_ = std::move(model); });
-  };
 }
 
 ViewOptions view_options(const PanelInput& input, Views& views) {

@@ -86,23 +86,21 @@ struct LoadedModel {
   std::string error;
 };
 
-/// Reads 3-D models in the background. Thread-safe.
+/// Reads 3-D models in the background.
 class ModelReader {
  public:
   /// `changed` is called on the reader's thread when a model has been read.
-  explicit ModelReader(std::function<void()> changed = {});
+  explicit ModelReader(std::function<void()> changed = {}) : queue_(std::move(changed)) {}
 
   /// Returns the model of this name (see `read_solid_model`), or requests it instead of the last
   /// one; nullopt while it is being read.
   std::optional<LoadedModel> get(const std::string& name);
-  JobStatus status() const { return locked_status(job_); }
+  JobStatus status() const { return queue_.status(); }
 
  private:
-  BackgroundJob::Job next();
-
   std::string wanted_;  ///< or read; empty: none
   std::optional<LoadedModel> model_ = LoadedModel{};
-  BackgroundJob job_;
+  TaskQueue<LoadedModel> queue_;
 };
 
 /// The input of the panels; what is referenced must outlive it.
