@@ -39,7 +39,7 @@ void draw_views(const PanelContext& ui, const WindowLayout& layout) {
   if (!layout.image.empty()) image_panel(ui, layout.image);
   if (layout.side.empty()) return;
   side_tabs(ui, layout.side_tabs);
-  side_pane(ui, layout.side);
+  draw_pane(ui, layout.side, "side", ui.state.view.panes.side);
 }
 
 void use_theme(Theme theme, Gui& gui, Views& views) {
@@ -88,8 +88,8 @@ void draw_panels(PanelContext ui, cv::Size size) {
   if (!layout.results.empty()) results_panel(ui, layout.results);
   draw_views(ui, layout);
   if (!layout.drawer_tabs.empty()) drawer_tabs(ui, layout.drawer_tabs);
-  if (!layout.drawer.empty()) drawer(ui, layout.drawer);
-  if (!layout.beside.empty()) drawer_beside(ui, layout.beside);
+  draw_pane(ui, layout.drawer, "drawer", view.panes.drawer);
+  draw_pane(ui, layout.beside, "drawer beside", view.panes.beside);
   if (!layout.timeline.empty()) timeline_panel(ui, layout.timeline);
   status_line(ui, layout.status);
   splitters(ui, layout);
@@ -105,10 +105,8 @@ void draw_alone(const Pane& pane, const PanelContext& ui, cv::Size size) {
   if (pane.kind == PaneKind::side) state.view.panes.side = &pane;
   if (pane.kind == PaneKind::drawer) state.view.panes = {.drawer = &pane};
   const PanelContext shown{ui.with(state), ui.views, ui.commands};
-  if (pane.kind == PaneKind::side)
-    side_pane(shown, place);
-  else if (pane.kind == PaneKind::drawer)
-    drawer(shown, place);
+  if (pane.kind == PaneKind::side || pane.kind == PaneKind::drawer)
+    draw_pane(shown, place, pane.kind == PaneKind::side ? "side" : "drawer", &pane);
   else
     draw_function(pane)(shown, place);
 }

@@ -183,25 +183,14 @@ DrawPanel* draw_function(const Pane& pane) {
   return found == kDrawings.end() ? nullptr : found->second;
 }
 
-void side_pane(const PanelContext& ui, const Rectangle& place) {
-  const Pane& open = *ui.state.view.panes.side;
-  if (open.covers) ImGui::SetNextWindowBgAlpha(0);
-  const PanelScope scope("side", place, {0, 0});
-  draw_function(open)(ui, place);
-}
-
-void drawer(const PanelContext& ui, const Rectangle& place) {
-  const Pane* open = ui.state.view.panes.drawer;
-  if (open == nullptr) return;
-  const PanelScope scope("drawer", place, {0, 0});
-  draw_function (*open)(ui, place);
-}
-
-void drawer_beside(const PanelContext& ui, const Rectangle& place) {
-  const Pane* open = ui.state.view.panes.beside;
-  if (open == nullptr) return;
-  const PanelScope scope("drawer beside", place, {0, 0});
-  draw_function (*open)(ui, place);
+void draw_pane(const PanelContext& ui,
+               const Rectangle& place,
+               const char* panel,
+               const Pane* pane) {
+  if (pane == nullptr || place.empty()) return;
+  if (pane->covers) ImGui::SetNextWindowBgAlpha(0);
+  const PanelScope scope(panel, place, {0, 0});
+  draw_function (*pane)(ui, place);
 }
 
 PanelScope::PanelScope(const char* name, const Rectangle& place, ImVec2 padding, PanelKind kind) {

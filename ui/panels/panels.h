@@ -225,8 +225,8 @@ DrawPanel help_overlay, palette_overlay, browser_overlay, sources_overlay;
 DrawPanel tour_card;
 /// Names of the side panes and of the drawers, which open them.
 DrawPanel side_tabs, drawer_tabs;
-/// The open side pane, and the open drawer if any.
-DrawPanel side_pane, drawer, drawer_beside;
+/// Draws a pane, if any, into a panel unless that is hidden.
+void draw_pane(const PanelContext& ui, const Rectangle& place, const char* panel, const Pane* pane);
 void menu_bar(const PanelContext& ui);
 /// Opens the context menu of the subjects at the mouse, the first one on top, and changes nothing
 /// else.
