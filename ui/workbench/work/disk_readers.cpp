@@ -77,9 +77,6 @@ FetchedImage fetch_image(const FrameCache& images, int frame) {
   }
 }
 
-ImageFetcher::ImageFetcher(std::function<void()> changed)
-    : job_([this] { return next(); }, std::move(changed)) {}
-
 FetchedImage ImageFetcher::get(const std::shared_ptr<const FrameCache>& images, int frame) {
   if (cv::Mat bgr = images->find(frame); !bgr.empty()) return {std::move(bgr), "", false};
   const auto lock = job_.lock();
@@ -114,9 +111,6 @@ BackgroundJob::Job ImageFetcher::next() {
     });
   };
 }
-
-FolderLister::FolderLister(std::function<void()> changed)
-    : job_([this] { return next(); }, std::move(changed)) {}
 
 FolderList FolderLister::list(const fs::path& folder) {
   const auto lock = job_.lock();

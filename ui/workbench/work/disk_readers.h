@@ -31,7 +31,8 @@ FetchedImage fetch_image(const FrameCache& images, int frame);
 class ImageFetcher {
  public:
   /// `changed` is called on the fetcher's thread when an image has arrived.
-  explicit ImageFetcher(std::function<void()> changed = {});
+  explicit ImageFetcher(std::function<void()> changed = {})
+      : job_([this] { return next(); }, std::move(changed)) {}
 
   /// Returns the image if cached, else requests it: the latest first, the earliest are dropped.
   FetchedImage get(const std::shared_ptr<const FrameCache>& images, int frame);
@@ -66,7 +67,8 @@ struct FolderList {
 class FolderLister {
  public:
   /// `changed` is called on the lister's thread when the list has grown.
-  explicit FolderLister(std::function<void()> changed = {});
+  explicit FolderLister(std::function<void()> changed = {})
+      : job_([this] { return next(); }, std::move(changed)) {}
 
   /// Returns the current list of the folder and discards that of the previous one.
   FolderList list(const std::filesystem::path& folder);

@@ -74,8 +74,6 @@ LiveSession::LiveSession(SourceAddress address,
   tracker_ = std::jthread([this](const std::stop_token& stop) { track(stop); });
 }
 
-LiveSession::~LiveSession() = default;
-
 void LiveSession::want(const Settings& settings) {
   const auto lock = job_.lock();
   settings_ = settings;

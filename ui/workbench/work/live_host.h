@@ -41,9 +41,6 @@ class LiveSession {
               const LiveHooks& hooks,
               double seconds,
               const std::function<void()>& changed);
-  ~LiveSession();
-  LiveSession(const LiveSession&) = delete;
-  LiveSession& operator=(const LiveSession&) = delete;
 
   /// Sets what the next windows are solved with.
   void want(const Settings& settings);

@@ -182,9 +182,6 @@ BackgroundJob::Job Survey::next() {
   };
 }
 
-Scan::Scan(std::function<void()> changed)
-    : job_([this] { return next(); }, std::move(changed), BackgroundJob::Priority::low) {}
-
 void Scan::want(std::shared_ptr<const Recording> recording, std::optional<Settings> settings) {
   const auto lock = job_.lock();
   if (settings) {
@@ -235,9 +232,6 @@ BackgroundJob::Job Scan::next() {
     });
   };
 }
-
-Extrapolator::Extrapolator(std::function<void()> changed)
-    : job_([this] { return next(); }, std::move(changed)) {}
 
 void Extrapolator::want(const std::shared_ptr<const Inspection>& inspection, int frame) {
   const auto lock = job_.lock();

@@ -57,7 +57,8 @@ class Survey {
 class Scan {
  public:
   /// `changed` is called on other threads after each start.
-  explicit Scan(std::function<void()> changed = {});
+  explicit Scan(std::function<void()> changed = {})
+      : job_([this] { return next(); }, std::move(changed), BackgroundJob::Priority::low) {}
 
   /// Requests a scan instead of the last one; null: none. The start of `settings` is ignored.
   void want(std::shared_ptr<const Recording> recording, std::optional<Settings> settings);
@@ -80,7 +81,8 @@ class Scan {
 class Extrapolator {
  public:
   /// `changed` is called on the job's thread after a result.
-  explicit Extrapolator(std::function<void()> changed = {});
+  explicit Extrapolator(std::function<void()> changed = {})
+      : job_([this] { return next(); }, std::move(changed)) {}
 
   /// Requests the cameras after a window up to a frame of the recording; null: none. A result that
   /// reaches the frame or ends before it is kept. Otherwise twice as many frames are located,
