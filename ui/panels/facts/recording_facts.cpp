@@ -21,12 +21,11 @@ namespace {
 using Eigen::Vector2d, Eigen::Vector3d;
 
 int digits_of(std::size_t k) { return k < 4 ? 2 : 5; }
-const char* unit_of(std::size_t k) { return k < 4 ? " px" : ""; }
 
 /// Returns the text of parameter `k` of a camera: focal lengths and center in pixels, then
 /// coefficients.
 std::string with_sigma(double value, std::optional<double> sigma, std::size_t k) {
-  const char* unit = unit_of(k);
+  const char* unit = k < 4 ? " px" : "";
   if (!sigma || *sigma == 0)
     return fmt::format("{:.{}f}{}{}", value, digits_of(k), unit, sigma ? " exact" : "");
   return fmt::format("{:.{}f} \u00b1{:.2g}{}", value, digits_of(k), *sigma, unit);
@@ -36,17 +35,9 @@ std::optional<double> sigma_of(const Camera& camera, std::size_t k) {
   return k < camera.sigmas.size() ? std::optional(camera.sigmas[k]) : std::nullopt;
 }
 
-const char* source_of(CameraSource source) {
-  switch (source) {
-    case CameraSource::file:
-      return "calibration file";
-    case CameraSource::self_calibrated:
-      return "estimated from the images";
-    case CameraSource::guess:
-      return "guessed field of view";
-  }
-  return "";
-}
+/// By the source of the camera.
+constexpr const char* kSources[] = {
+    "calibration file", "estimated from the images", "guessed field of view"};
 
 /// Returns the angle between the rays of two pixels [deg]; nullopt beyond the lens model.
 std::optional<double> angle_between_deg(const Camera& camera,
@@ -78,12 +69,13 @@ ResultGroup camera_group(const Recording& recording) {
   ResultGroup group{
       "CAMERA",
       {{.label = "Source",
-        .value = source_of(recording.camera_source),
+        .value = kSources[static_cast<std::size_t>(recording.camera_source)],
         .tooltip = guess ? "Run calibrate, or add a camera file" : "Source of the lens parameters",
         .color = guess ? Role::warning : Role::text},
        {.label = "Image",
         .value = fmt::format("{}\u00d7{} px", camera.width, camera.height),
         .tooltip = "Size of the recorded images"},
+       view_row(camera),
        {.label = "Lens model",
         .value = distortion_name(camera.distortion),
         .tooltip = "Model of the distortion, as in camera files"}}};
@@ -108,7 +100,6 @@ ResultGroup camera_group(const Recording& recording) {
     }
     group.rows.push_back(std::move(row));
   }
-  group.rows.insert(group.rows.begin() + 2, view_row(camera));
   const auto& readout = camera.readout;
   group.rows.push_back(
       readout
