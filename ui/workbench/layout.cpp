@@ -210,24 +210,18 @@ Rectangle place_of(Splitter splitter, const WindowLayout& layout, float scale) {
   const float gap = std::max(1.0f, scaled(1, scale));
   const auto& [settings, views, image, drawer, tabs] =
       std::tie(layout.settings, layout.views, layout.image, layout.drawer, layout.drawer_tabs);
-  switch (splitter) {
-    case Splitter::column:
-      if (settings.empty() || views.empty()) return {};
-      return {views.x - gap,
-              layout.verdict.y,
-              gap,
-              layout.verdict.height + settings.height + layout.results.height};
-    case Splitter::settings:
-      if (settings.empty()) return {};
-      return {settings.x, settings.bottom() - gap, settings.width, gap};
-    case Splitter::image:
-      if (image.empty() || layout.side.empty()) return {};
-      if (side_by_side(views)) return {image.right(), image.y, gap, image.height};
-      return {image.x, image.bottom(), image.width, gap};
-    case Splitter::drawer:
-      if (views.empty() || drawer.empty()) return {};
-      return {tabs.x, tabs.y - gap, tabs.width, gap};
-  }
+  if (splitter == Splitter::column && !settings.empty() && !views.empty())
+    return {views.x - gap,
+            layout.verdict.y,
+            gap,
+            layout.verdict.height + settings.height + layout.results.height};
+  if (splitter == Splitter::settings && !settings.empty())
+    return {settings.x, settings.bottom() - gap, settings.width, gap};
+  if (splitter == Splitter::image && !image.empty() && !layout.side.empty())
+    return side_by_side(views) ? Rectangle{image.right(), image.y, gap, image.height}
+                               : Rectangle{image.x, image.bottom(), image.width, gap};
+  if (splitter == Splitter::drawer && !views.empty() && !drawer.empty())
+    return {tabs.x, tabs.y - gap, tabs.width, gap};
   return {};
 }
 

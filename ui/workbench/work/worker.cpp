@@ -155,7 +155,7 @@ FileReader::Task reading_of(const fs::path& file,
   };
 }
 
-/// Stops to read a file, and drops one that has been read.
+/// Stops reading a file, and drops one that has been read.
 void stop_reading(WorkerLink& link) {
   link.reader->cancel();
   link.reader->take();
