@@ -3,7 +3,6 @@
 // The image and the scene with their overlays.
 #include "engine/inspection/studies/studies.h"
 #include "ui/panels/panels.h"
-#include "ui/panels/panes/view_tools.h"
 #include "ui/views/image/image_geometry.h"
 
 #include <algorithm>

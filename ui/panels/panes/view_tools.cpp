@@ -1,8 +1,7 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "ui/panels/panes/view_tools.h"
-
 #include "engine/inspection/studies/studies.h"
+#include "ui/panels/panels.h"
 #include "ui/views/image/image_geometry.h"
 
 #include <array>
