@@ -4,7 +4,6 @@
 
 #include "engine/files/late_function.h"
 
-
 extern "C" {
 #include <libavcodec/avcodec.h>
 #include <libavdevice/avdevice.h>

@@ -1,7 +1,6 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/inspection/inspection.h"
-
 #include "engine/inspection/inspector.h"
 #include "engine/inspection/report/report.h"
 #include "engine/inspection/studies/studies.h"

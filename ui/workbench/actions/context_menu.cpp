@@ -1,8 +1,7 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "ui/workbench/actions/actions.h"
-
 #include "engine/inspection/studies/studies.h"
+#include "ui/workbench/actions/actions.h"
 
 #include <algorithm>
 #include <iomanip>

@@ -292,8 +292,7 @@ TEST(SmoothedImage, SpreadsAPixelOverItsNeighborsAndKeepsAUniformImage) {
       EXPECT_EQ(smoothed.at<std::uint16_t>(v, u), near ? 100 * weights[v - 3] * weights[u - 4] : 0);
     }
   const cv::Mat uniform = smooth_image(cv::Mat(6, 7, CV_8UC1, cv::Scalar(255)));
-  for (const std::uint16_t value : cv::Mat_<std::uint16_t>(uniform))
-    EXPECT_EQ(value, 255 * 64);
+  for (const std::uint16_t value : cv::Mat_<std::uint16_t>(uniform)) EXPECT_EQ(value, 255 * 64);
   for (const std::uint16_t value : cv::Mat_<std::uint16_t>(halved(uniform)))
     EXPECT_EQ(value, 255 * 64);
 }

@@ -1,13 +1,12 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "ui/workbench/work/writers.h"
-
 #include "engine/exports/scene.h"
 #include "engine/inspection/studies/studies.h"
 #include "tests/engine/exports/exported_room.h"
 #include "tests/engine/test_folder.h"
 #include "tests/ui/window_test.h"
 #include "ui/views/overlay/overlay.h"
+#include "ui/workbench/work/writers.h"
 
 #include <thread>
 
