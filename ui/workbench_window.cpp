@@ -300,6 +300,8 @@ PanelInput WorkbenchHost::input() const {
   PanelInput input{state, link.reading.busy ? link.reading : link.worker, link.survey, link.scan};
   if (movie_) input.writing = {true, "movie", movie_->done(), movie_->of()};
   if (!movie_ && wants_report(state)) input.writing = report_status(state);
+  for (const JobStatus& saving : {recordings_.status(), exports_.status()})
+    if (saving.busy && !input.writing.busy) input.writing = saving;
   input.timings = timings;
   input.opening = link.loading;
   return input;

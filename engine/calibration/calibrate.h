@@ -29,8 +29,8 @@ struct BoardSearch {
 };
 
 /// Searches at most `most_frames` images, evenly spread, on all processors. Leaves out views with
-/// fewer than 8 corners. Throws InputError if an image cannot be decoded or differs in size, and
-/// Stopped.
+/// fewer than 8 corners, or less than a whole tag if the board has only one. Throws InputError if
+/// an image cannot be decoded or differs in size, and Stopped.
 BoardSearch find_calibration_views(const FrameCache& images,
                                    const Board& board,
                                    int most_frames,

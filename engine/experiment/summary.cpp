@@ -227,15 +227,15 @@ std::vector<NumberColumn> error_columns(std::span<const Cell> cells) {
 }
 
 std::vector<Row> on_common_windows(std::span<const Row> rows) {
-  std::map<int, std::set<std::string>> solvers;  // configurations by length
-  std::map<WindowKey, std::size_t> solved;       // number of configurations
+  std::map<int, std::set<std::string>> solvers;  // configurations
+  std::map<WindowKey, std::set<std::string>> solved;
   for (const Row& row : rows) {
     if (!row.ok()) continue;
     solvers[row.settings.frames].insert(row.configuration);
-    ++solved[window_of(row)];
+    solved[window_of(row)].insert(row.configuration);
   }
   return rows_where(rows, [&](const Row& row) {
-    return row.ok() && solved[window_of(row)] == solvers[row.settings.frames].size();
+    return row.ok() && solved[window_of(row)] == solvers[row.settings.frames];
   });
 }
 

@@ -103,7 +103,9 @@ std::optional<Vector3d> RateIntegral::mean_rate(std::int64_t from_ns, std::int64
 
 std::optional<Vector3d> RateIntegral::at(std::int64_t time_ns) const {
   const auto after = std::ranges::upper_bound(times_ns_, time_ns);
-  if (after == times_ns_.begin() || after == times_ns_.end()) return std::nullopt;
+  if (times_ns_.empty() || time_ns < times_ns_.front() || time_ns > times_ns_.back())
+    return std::nullopt;
+  if (after == times_ns_.end()) return sums_.back();
   const auto k = static_cast<std::size_t>(after - times_ns_.begin());
   const double share = static_cast<double>(time_ns - times_ns_[k - 1]) /
                        static_cast<double>(times_ns_[k] - times_ns_[k - 1]);

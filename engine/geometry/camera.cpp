@@ -128,7 +128,7 @@ Eigen::MatrixXd lens_root(const Camera& camera) {
 
 void check_camera(const Camera& camera) {
   const auto positive = [](double focal) { return std::isfinite(focal) && focal > 0; };
-  if (!positive(camera.fx) || !positive(camera.fy) || !std::isfinite(camera.cx + camera.cy))
+  if (!positive(camera.fx) || !positive(camera.fy))
     throw InputError(
         fmt::format("camera: fx {}, fy {}, cx {}, cy {}, expected focal lengths above 0",
                     camera.fx,

@@ -43,7 +43,7 @@ double root_mean_square(std::span<const double> values) {
 }
 
 double without_negative_zero(double value, int decimals) {
-  return value <= 0 && value > -0.5 * std::pow(10, -decimals) ? 0 : value;
+  return value <= 0 && value >= -0.5 * std::pow(10, -decimals) ? 0 : value;
 }
 
 }  // namespace gpo

@@ -107,7 +107,7 @@ class ModelReader {
 struct PanelInput {
   const WorkbenchState& state;
   JobStatus worker = {}, survey = {}, scan = {};
-  JobStatus writing = {};  ///< progress of a movie
+  JobStatus writing = {};  ///< progress of a movie, report, export or saved recording
   bool timings = true;     ///< false: dashes instead of times, to make screenshots comparable
   bool hurries = false;    ///< images arrive: the scene is rendered without antialiasing
   ImageFetcher* fetcher = nullptr;  ///< null: drawing decodes images itself

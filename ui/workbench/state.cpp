@@ -75,6 +75,7 @@ void leave_reference_frame(WorkbenchState& state, Settings& settings, const Sett
             " removed: the window starts elsewhere. Ctrl+Z restores both");
   settings.exclude.clear();
   settings.mask = {};
+  state.view.drawn_mask.reset();
 }
 
 }  // namespace

@@ -19,6 +19,7 @@ namespace {
 constexpr const char* kDefault = "default";
 constexpr const char* kNone = "none";
 constexpr double kLargestId = 9e15;
+constexpr double kMostPixel = 1e6;
 
 [[noreturn]] void refuse(const Setting& setting,
                          const std::string& text,
@@ -49,9 +50,11 @@ SettingValue ids_from(const Setting& setting, const std::string& text) {
 SettingValue point_pair_from(const Setting& setting, const std::string& text) {
   PointPair pair;
   if (text == kNone) return pair;
-  for (const std::string& one : split(text + ",", ','))
+  for (const std::string& one : split(text + ",", ',')) {
+    const double most = pair.numbers.size() < 4 ? kMostPixel : kLargestId;
     pair.numbers.push_back(
-        std::get<double>(in_range(setting, one, parse_number(one), -1e6, kLargestId)));
+        std::get<double>(in_range(setting, one, parse_number(one), -kMostPixel, most)));
+  }
   const auto count = pair.numbers.size();
   const bool whole =
       count < 5 || pair.numbers[4] == std::clamp(std::round(pair.numbers[4]), 0., 1e9);
@@ -68,7 +71,8 @@ Mask mask_from(const Setting& setting, const std::string& text) {
   std::vector<double> numbers;
   if (colon != std::string::npos)
     for (const std::string& one : split(text.substr(colon + 1) + ",", ','))
-      numbers.push_back(std::get<double>(in_range(setting, one, parse_number(one), -1e6, 1e6)));
+      numbers.push_back(
+          std::get<double>(in_range(setting, one, parse_number(one), -kMostPixel, kMostPixel)));
   for (std::size_t k = 0; k + 1 < numbers.size(); k += 2)
     mask.corners_raw_px.emplace_back(numbers[k], numbers[k + 1]);
   if (numbers.size() < 4 || numbers.size() % 2 != 0)

@@ -95,6 +95,7 @@ Window without_tracks(const Window& window, const std::vector<bool>& removed) {
   }
   Window less = window;
   less.lens_moves_px.clear();
+  less.row_delay_moves_px.clear();
   for (int i = 0; i < window.frame_count(); ++i) {
     less.points_px[i] = window.points_px[i](Eigen::all, kept);
     less.inlier[i] = picked(window.inlier[i], kept);

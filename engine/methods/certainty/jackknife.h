@@ -14,7 +14,7 @@ namespace gpo {
 inline constexpr int kJackknifeGroups = 10;
 
 /// Returns the window without the tracks that are marked, one per track. Homographies are fitted
-/// again; lens moves and the cached errors are dropped.
+/// again; moves by the lens and the row delay are dropped.
 Window without_tracks(const Window& window, const std::vector<bool>& removed);
 
 /// Returns the covariances of a method's own estimates (engine/method.md, eq. 14j): tracks are

@@ -38,7 +38,7 @@ using Monomials = Eigen::Matrix<double, kMonomials, 1>;
 
 /// Order of the unknowns: those that all frames share (`UnknownsLayout`), row delay, lens
 /// parameters (held: they only contribute to the uncertainty), lens residual, the frames' own ones:
-/// t, or (phi, t), and their velocities: rotation, translation.
+/// t, or (phi, t), and their velocities: translation, rotation.
 struct JointLayout {
   UnknownsLayout shared;
   int row_delay = 0;  ///< 0 or 1

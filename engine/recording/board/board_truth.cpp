@@ -200,7 +200,8 @@ std::optional<fs::path> board_cache_file(const Recording& recording) {
                                 fmt::join(camera.coefficients, " "),
                                 text_of(*recording.board));
   try {
-    key += content_of(recording).at("pictures");
+    const RecordingContent content = content_of(recording);
+    key += content.at("pictures") + content.at("time stamps");  // frames may be left out
   } catch (const InputError&) {
     return std::nullopt;
   }

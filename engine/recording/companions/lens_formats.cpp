@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include <Eigen/Geometry>
 #include <nlohmann/json.hpp>
 
 namespace gpo {
@@ -261,7 +262,6 @@ Calibration read_nerfstudio(const YamlEntry& root) {
   constexpr double kCenter_px = 0.5;
   Calibration result;
   Camera& camera = result.camera;
-  check_distortion_is_read(root, std::nullopt, "k1 k2 k3 k4 p1 p2");
   set_size(camera, root, "w", "h");
   const auto model = find(root, "camera_model");
   const auto fisheye = find(root, "is_fisheye");
@@ -270,6 +270,7 @@ Calibration read_nerfstudio(const YamlEntry& root) {
       name == "OPENCV_FISHEYE" || (fisheye && text(*fisheye, "true or false") == "true");
   if (!equidistant && name != "OPENCV" && name != "PINHOLE" && name != "SIMPLE_PINHOLE")
     yaml_fail(*model, "OPENCV, OPENCV_FISHEYE, PINHOLE or SIMPLE_PINHOLE");
+  check_distortion_is_read(root, std::nullopt, equidistant ? "k1 k2 k3 k4" : "k1 k2 k3 p1 p2");
   const auto focal = find(root, "fl_x");
   const YamlEntry place = focal ? *focal : at(root, "camera_angle_x", "an angle in radians");
   if (!focal || !find(root, "cx")) at_path(root, "w", kPixels);

@@ -9,6 +9,7 @@
 #include <cmath>
 
 #include <Eigen/LU>
+#include <fmt/format.h>
 
 namespace gpo {
 namespace {

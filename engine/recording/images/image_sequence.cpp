@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
+#include <limits>
 #include <set>
 
 #include <fmt/ranges.h>
@@ -167,6 +168,11 @@ std::optional<NamedTime> named_time(const fs::path& file) {
   return whole ? std::optional(NamedTime{*whole, "", false}) : std::nullopt;
 }
 
+/// Returns whether 64 bits can store the last of the numbers in nanoseconds.
+bool fit_in_64_bits(const std::vector<std::int64_t>& sorted, std::int64_t unit) {
+  return sorted.back() <= std::numeric_limits<std::int64_t>::max() / unit;
+}
+
 /// Returns the nanoseconds per unit of times that count from about zero; 0 if the numbers may be
 /// those of frames, whose steps are all alike (0, 10, 20) where those of rounded times are not
 /// (0, 33, 67).
@@ -175,8 +181,10 @@ std::int64_t unit_from_zero(const std::vector<std::int64_t>& sorted, std::int64_
   constexpr std::int64_t kMillisecond_ns = 1'000'000;
   constexpr std::size_t kLeastTimes = 5;
   for (const std::int64_t unit : {kMillisecond_ns, std::int64_t{1000}, std::int64_t{1}}) {
-    const double step_s = 1e-9 * static_cast<double>(unit * step);
-    if (sorted.size() < kLeastTimes || step_s < kLeastStep_s || step_s > kMostStep_s) continue;
+    const double step_s = 1e-9 * static_cast<double>(unit) * static_cast<double>(step);
+    if (!fit_in_64_bits(sorted, unit) || sorted.size() < kLeastTimes || step_s < kLeastStep_s ||
+        step_s > kMostStep_s)
+      continue;
     bool differ = unit != kMillisecond_ns;
     for (std::size_t i = 1; i < sorted.size(); ++i) {
       const double steps =
@@ -206,7 +214,7 @@ std::int64_t unit_of(const std::vector<NamedTime>& times) {
   for (const std::int64_t unit : {1, 1000, 1000000}) {
     const double unit_s = 1e-9 * static_cast<double>(unit);
     const double first_s = static_cast<double>(sorted.front()) * unit_s;
-    if (first_s >= kFirst_s && first_s <= kLast_s &&
+    if (fit_in_64_bits(sorted, unit) && first_s >= kFirst_s && first_s <= kLast_s &&
         static_cast<double>(step) * unit_s < kMostStep_s)
       return unit;
   }

@@ -1,6 +1,7 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/base/error.h"
+#include "engine/files/refuse.h"
 #include "engine/files/text_file.h"
 #include "engine/recording/companions/companion_files.h"
 #include "engine/recording/images/images.h"
@@ -212,6 +213,13 @@ void take_source(Recording& recording, const Calibration& calibration) {
   const std::string detail =
       guess ? calibration.name + " has a guess; run `calibrate`" : calibration.name;
   set_camera(recording, recording.camera, calibration.source, detail);
+}
+
+void check_image_size(const Recording& recording, const fs::path& calibration_file) {
+  if (recording.camera.width == 0)
+    refuse(calibration_file,
+           "key `image_width`: found no value, expected a number of pixels, since there are no "
+           "images");
 }
 
 void guess_camera(Recording& recording, const std::optional<FieldOfView>& view) {

@@ -153,6 +153,7 @@ Recording read_euroc(const fs::path& folder, const OpenOptions& options) {
   recording.T_body_camera = calibration.T_body_camera;
   add_images(recording, read_image_list(folder), options);
   take_source(recording, calibration);
+  check_image_size(recording, calibration_file);
   const auto mean_bias = add_truth(recording, folder);
   add_gyroscope(recording, folder, calibration.time_offset_ns, mean_bias);
   if (!calibration.T_body_camera && (recording.gyroscope || recording.truth))
@@ -176,8 +177,12 @@ Recording read_tum(const fs::path& folder, const OpenOptions& options) {
   report_calibration(recording, search, calibration);
   recording.camera = calibration.camera;
   add_images(recording, std::move(list), options);
-  if (!search.file) guess_camera(recording, stored_view(recording.image_files.front()));
+  if (!search.file) {
+    const auto& files = recording.image_files;
+    guess_camera(recording, files.empty() ? std::nullopt : stored_view(files.front()));
+  }
   take_source(recording, calibration);
+  check_image_size(recording, search.file.value_or(folder / "camera.yaml"));
   recording.truth = truth_beside(folder, recording.timestamps_ns);
   return recording;
 }

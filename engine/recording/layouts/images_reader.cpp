@@ -237,10 +237,7 @@ Recording read_images(const fs::path& path, const OpenOptions& options) {
     guess_camera(recording, files.empty() ? std::nullopt : stored_view(files.front()));
   }
   take_source(recording, calibration);
-  if (recording.camera.width == 0)
-    refuse(calibration_file,
-           "key `image_width`: found no value, expected a number of pixels, since there are no "
-           "images");
+  check_image_size(recording, calibration_file);
   const auto count = recording.images ? std::optional(recording.images->count()) : std::nullopt;
   if (tracks) recording.tracks = read_tracks(*tracks, count);
   recording.timestamps_ns =

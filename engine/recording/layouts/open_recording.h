@@ -133,6 +133,9 @@ void set_camera(Recording& recording,
 /// Keeps a guess or a self-calibrated camera as what its file says it is.
 void take_source(Recording& recording, const Calibration& calibration);
 
+/// Throws InputError if neither images nor the calibration state the size of the images.
+void check_image_size(const Recording& recording, const fs::path& calibration_file);
+
 /// Guesses a camera from the known size of the images and their stored field of view, or the usual
 /// one (kUsualView_deg).
 void guess_camera(Recording& recording, const std::optional<FieldOfView>& view = {});

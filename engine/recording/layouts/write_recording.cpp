@@ -190,6 +190,14 @@ void check_bag(const Recording& recording,
     refuse(recording.path,
            "time {} ns is before 1970, which ROS 1 cannot store; choose a name that ends in .mcap",
            first);
+  const std::int64_t last = plan.back().time_ns;
+  const std::int64_t most_s = mcap ? std::int64_t{std::numeric_limits<std::int32_t>::max()}
+                                   : std::int64_t{std::numeric_limits<std::uint32_t>::max()};
+  if (last / second > most_s)
+    refuse(recording.path,
+           "time {} ns is after {}, which a bag cannot store; convert to an EuRoC folder",
+           last,
+           mcap ? 2038 : 2106);
 }
 
 void write_bag(const Recording& recording,
@@ -212,8 +220,14 @@ void write_bag(const Recording& recording,
     if (progress && one.topic == Topic::images) progress(one.number + 1, recording.frame_count());
   }
   writer.finish();
-  for (const auto& [name, text] : files) write_file(folder / name, text);
-  unfinished.finish();
+  try {
+    for (const auto& [name, text] : files) write_file(folder / name, text);
+    unfinished.finish();
+  } catch (...) {
+    std::error_code none;
+    for (const auto& [name, text] : files) fs::remove(folder / name, none);
+    throw;
+  }
 }
 
 std::string camera_yaml(const Recording& recording) {

@@ -214,6 +214,9 @@ TEST(Summary, ExcludesFailuresFromMediansAndComparesOnWindowsThatAllSolved) {
   EXPECT_EQ(common[1].frames, 20);  // the other solved none of this length and is ignored
   EXPECT_EQ(common[1].windows, 1);
   EXPECT_EQ(common[2].values.at("pne_deg").median, 4);
+  std::vector<Row> repeated = made_rows();
+  repeated.push_back(repeated[4]);  // solves the window again that the other failed
+  EXPECT_EQ(summarize(on_common_windows(repeated))[0].windows, 2);
 }
 
 Experiment made_experiment() {

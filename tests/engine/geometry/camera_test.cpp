@@ -3,6 +3,7 @@
 #include "engine/geometry/camera.h"
 
 #include "engine/base/error.h"
+#include "tests/engine/test_folder.h"
 
 #include <cmath>
 
@@ -164,6 +165,9 @@ TEST(Camera, RejectsImpossibleParameters) {
   EXPECT_FALSE(has_near_principal_point(camera));
   camera.width = camera.height = 0;
   EXPECT_TRUE(has_near_principal_point(camera));
+  camera.cx = std::nan("");
+  EXPECT_EQ(test::error_of([&] { check_camera(camera); }),
+            "camera: cx nan, expected a finite number");
   camera.fx = 0;
   EXPECT_THROW(check_camera(camera), InputError);
   EXPECT_FALSE(is_focal_length(0));

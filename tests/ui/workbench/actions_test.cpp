@@ -90,10 +90,12 @@ TEST(Script, HasCommentsOnlyAtTheBeginningOfAWord) {
   const auto lines = read_script(folder.write("a.script",
                                               "# first\n"
                                               "open desk#1 # which\n"
-                                              "open \"my desk #2\"\n"));
-  ASSERT_EQ(lines.size(), 2U);
+                                              "open \"my desk #2\"\n"
+                                              "copy \"a \\\" # b\" # c\n"));
+  ASSERT_EQ(lines.size(), 3U);
   EXPECT_EQ(lines[0].text, "open desk#1 ");
   EXPECT_EQ(lines[1].text, "open \"my desk #2\"");
+  EXPECT_EQ(lines[2].text, "copy \"a \\\" # b\" ");
 }
 
 TEST(Actions, ReadArgumentsAndReportInvalidOnes) {

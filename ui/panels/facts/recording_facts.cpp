@@ -147,8 +147,12 @@ ResultGroup sensor_group(const Recording& recording) {
   return group;
 }
 
-/// Describes the intervals that are longer than `factor` median periods.
-ResultRow gap_row(const char* label, std::span<const std::int64_t> times_ns, double factor) {
+/// Describes the intervals that are longer than `factor` median periods. Their times are counted
+/// from `first_ns`.
+ResultRow gap_row(const char* label,
+                  std::span<const std::int64_t> times_ns,
+                  double factor,
+                  std::int64_t first_ns) {
   const std::int64_t period_ns = median_period_ns(times_ns);
   int count = 0;
   std::int64_t longest_ns = 0, at_ns = 0;
@@ -165,7 +169,7 @@ ResultRow gap_row(const char* label, std::span<const std::int64_t> times_ns, dou
           .value = counted(count, "gap"),
           .note = fmt::format("longest {:.3f} s at {:.2f} s",
                               1e-9 * static_cast<double>(longest_ns),
-                              1e-9 * static_cast<double>(at_ns - times_ns.front())),
+                              1e-9 * static_cast<double>(at_ns - first_ns)),
           .tooltip = tooltip,
           .color = Role::warning};
 }
@@ -179,9 +183,10 @@ ResultGroup time_group(const Recording& recording) {
                         .value = fmt::format("{} at {:.4g} Hz", times_ns.size(), rate_hz(times_ns)),
                         .note = fmt::format("{:.2f} s", seconds),
                         .tooltip = "Number, median rate and duration"});
-  group.rows.push_back(gap_row("Frame gaps", times_ns, 1.5));
-  if (recording.gyroscope)
-    group.rows.push_back(gap_row("Sample gaps", recording.gyroscope->timestamps_ns, 5));
+  group.rows.push_back(gap_row("Frame gaps", times_ns, 1.5, times_ns.front()));
+  if (const auto& gyroscope = recording.gyroscope)
+    group.rows.push_back(gap_row(
+        "Sample gaps", gyroscope->timestamps_ns, 5, times_ns.front() + gyroscope->time_offset_ns));
   const auto& truth = recording.truth;
   if (!truth) {
     group.rows.push_back(dash(

@@ -333,7 +333,7 @@ void sources_overlay(const PanelContext& ui, const Rectangle& window) {
   if (row >= 0 && row < static_cast<int>(found.size()))
     push(ui.commands, RunAction{"live " + found[static_cast<std::size_t>(row)].address});
   else if (entered && !typed.empty())
-    push(ui.commands, RunAction{fmt::format("live \"{}\"", typed)});
+    push(ui.commands, RunAction{"live " + as_argument(typed)});
   if (found.empty()) ImGui::TextDisabled("Found no camera that this user may open");
   ImGui::TextDisabled("Up, Down choose a camera \u00b7 Enter opens \u00b7 Esc closes");
 }

@@ -340,14 +340,12 @@ void image_panel(const PanelContext& ui, const Rectangle& place) {
 void image_alone(const PanelContext& ui, const Rectangle& place) {
   const Area area{*ImGui::GetBackgroundDrawList(), screen_rect(place)};
   const auto other = flipped_result(ui.state);
-  const auto after = other ? std::nullopt : showing_after(ui.state);
-  const Inspection* inspection = other   ? other->inspection.get()
-                                 : after ? after->results.inspection.get()
-                                         : ui.inspection();
+  const auto replaced = other ? std::optional(showing(ui.state, *other)) : showing_after(ui.state);
+  const WorkbenchState& state = replaced ? *replaced : ui.state;
+  const Inspection* inspection = state.results.inspection.get();
   const Inspection empty = inspection ? Inspection{} : nothing_to_show(ui.state.document.recording);
   const int frame = update_image(ui);
-  const ViewOptions options =
-      view_options(ui.with(other ? showing(ui.state, *other) : ui.state), ui.views);
+  const ViewOptions options = view_options(ui.with(state), ui.views);
   draw_image_view(area, {inspection ? *inspection : empty, frame, options}, shown_image(ui.views));
   if (other) draw_flip_label(area, *other);
 }

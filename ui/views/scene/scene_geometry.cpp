@@ -90,13 +90,18 @@ OrbitCamera fitted_to_all(const OrbitCamera& camera,
   return fitted(camera, extent, aspect, {.bottom = 0.24});
 }
 
-/// Views the scene through a camera of the window, high enough to show its whole image.
+/// Views the scene through a camera of the window, high enough to show its whole image, whose
+/// principal point is in the middle of the view.
 OrbitCamera through_camera(const Inspection& inspection, double aspect, int frame) {
   const auto& cameras = inspection.initialization->cameras;
   const int last = static_cast<int>(cameras.size()) - 1;
   const Pose& pose = cameras[std::clamp(frame - inspection.window->start, 0, last)];
   const Camera& lens = inspection.recording->camera;
-  Vector2d half(lens.width / (2 * lens.fx), lens.height / (2 * lens.fy));
+  const auto half_tangent = [](double center_px, int size, double focal_px) {
+    return std::max(center_px + 0.5, size - 0.5 - center_px) / focal_px;
+  };
+  Vector2d half(half_tangent(lens.cx, lens.width, lens.fx),
+                half_tangent(lens.cy, lens.height, lens.fy));
   Vector3d up_c(0, -1, 0);
   for (int turn = 0; turn < inspection.recording->quarter_turns; ++turn) {
     half = half.reverse().eval();

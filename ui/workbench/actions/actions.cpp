@@ -24,6 +24,7 @@ std::size_t comment_begin(std::string_view line) {
   for (std::size_t i = 0; i < line.size(); ++i) {
     if (line[i] == '#' && !quoted && !in_word) return i;
     if (line[i] == '"') quoted = !quoted;
+    if (line[i] == '\\' && quoted && i + 1 < line.size()) ++i;  // the next character is one of the word
     in_word = line[i] != ' ' && line[i] != '\t';
   }
   return line.size();

@@ -208,6 +208,7 @@ struct FromJson {
       entry("note", one.note);
       bookmarks.push_back(one);
     }
+    std::ranges::stable_sort(bookmarks, {}, &Bookmark::frame);
   }
 };
 

@@ -43,6 +43,7 @@ void reset_view(ViewState& view) {
   view.compare_zoom.reset();
   view.normals_zoom = {};
   view.orbit.reset();
+  view.drawn_mask.reset();
 }
 
 /// Returns whether a recording is open that can be opened again; that of a live source cannot.

@@ -192,6 +192,9 @@ TEST_F(BoardCache, DependsOnImagesCameraAndBoard) {
   other.board = kTwin;
   other.board->markers = BoardMarkers{0.02, "DICT_4X4_50"};
   EXPECT_NE(board_cache_file(other), file);
+  other = one;
+  other.timestamps_ns.back() += 1;
+  EXPECT_NE(board_cache_file(other), file);
   folder_.write("2.png", "another picture");
   EXPECT_NE(board_cache_file(one), file);
   other.image_files.clear();

@@ -338,7 +338,12 @@ TEST(LensFormats, RefuseADistortionUnderAnUnknownKey) {
   EXPECT_THAT(error(opencv + "distortion_model: plumb_bob\n"),
               HasSubstr("key `distortion_coefficients`: found no value"));
   EXPECT_THAT(error(nice), HasSubstr("key `camera.my_dist" + kUnread));
-  for (const std::string& text : {euroc, kitti}) EXPECT_EQ(error(text), "no error");
+  const std::string nerfstudio = "fl_x: 500\ncx: 320\ncy: 240\nw: 640\nh: 480\nk1: 0.1\n";
+  for (const std::string& text : {euroc, kitti, nerfstudio + "k4: 0\n"})
+    EXPECT_EQ(error(text), "no error");
+  EXPECT_THAT(error(nerfstudio + "k4: 0.1\n"), HasSubstr("key `k4" + kUnread));
+  EXPECT_THAT(error(nerfstudio + "camera_model: OPENCV_FISHEYE\np1: 0.1\n"),
+              HasSubstr("key `p1" + kUnread));
   EXPECT_THAT(error(euroc + "lens_coef: [0.1]\n"), HasSubstr("key `lens_coef" + kUnread));
   EXPECT_THAT(error(kitti + "distortion_0: 0.1 0.2\n"), HasSubstr("key `distortion_0" + kUnread));
   for (const std::size_t program : {1, 10, 13})

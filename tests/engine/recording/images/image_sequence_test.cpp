@@ -73,5 +73,11 @@ TEST(TimesInNames, AreNotReadFromNumbersOfFrames) {
   }
 }
 
+TEST(TimesInNames, AreNotReadIfOneDoesNotFitIntoNanoseconds) {
+  std::vector<std::filesystem::path> files = {
+      "1600000000000.png", "1600000000033.png", "1600000000066.png", "99999999999999.png"};
+  EXPECT_FALSE(times_in_names(files));
+}
+
 }  // namespace
 }  // namespace gpo::test

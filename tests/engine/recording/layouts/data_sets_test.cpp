@@ -270,6 +270,16 @@ TEST_F(DataSets, GuessesTheLensOfTumWithoutACalibration) {
   EXPECT_EQ(open()->camera.fx, 60);
 }
 
+TEST_F(DataSets, NeedASizeForTracksWithoutImages) {
+  folder.write("rgb.txt", "1000.5 rgb/0.png\n1001.5 rgb/1.png\n");
+  folder.write("tracks.csv", "frame,track,x,y\n0,1,2,3\n1,1,2,4\n");
+  const OpenOptions options{.tracks = folder.path() / "tracks.csv"};
+  const auto error = [&] { return error_of([&] { open_recording(folder.path(), options); }); };
+  EXPECT_THAT(error(), HasSubstr("camera.yaml: key `image_width`: found no value"));
+  folder.write("calibration.txt", "60 61 31 23\n");
+  EXPECT_THAT(error(), HasSubstr("calibration.txt: key `image_width`: found no value"));
+}
+
 TEST_F(DataSets, ReportPosesThatDoNotFitTheImages) {
   write_images("results/frame{:06d}.jpg");
   folder.write("traj.txt", row_major(true_pose(0), 4) + "\n");

@@ -66,6 +66,16 @@ TEST_P(WrittenBag, OpensAsTheSameRecording) {
               HasSubstr("already exists; choose a new file"));
 }
 
+TEST_P(WrittenBag, CannotStoreTimesFarInTheFuture) {
+  Recording changed = *open_recording(small_bag());
+  changed.timestamps_ns.back() = 5'000'000'000'000'000'000;
+  const bool mcap = GetParam() == RecordingFormat::mcap;
+  const fs::path file = folder.path() / (mcap ? "new.mcap" : "new.bag");
+  EXPECT_THAT(error_of([&] { write_recording(changed, changed.truth, GetParam(), file); }),
+              HasSubstr(mcap ? "is after 2038, which a bag cannot store" : "is after 2106"));
+  EXPECT_FALSE(fs::exists(file));
+}
+
 TEST_P(WrittenBag, OpensWithoutSamplesThatAreNotFinite) {
   Recording changed = *open_recording(small_bag());
   Gyroscope& gyroscope = *changed.gyroscope;

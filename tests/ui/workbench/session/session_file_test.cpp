@@ -129,6 +129,16 @@ constexpr const char* kOldSession = R"({
   "bookmarks": [{"frame": 12, "note": "the cube leans"}]
 })";
 
+TEST_F(SessionFile, SortsTheBookmarks) {
+  std::string text = kOldSession;
+  const std::string before = R"("bookmarks": [)";
+  text.insert(text.find(before) + before.size(), R"({"frame": 20, "note": "late"}, )");
+  state_.files.waiting_session = read_session(write(text));
+  apply_recording(state_, state_.document.recording);
+  EXPECT_THAT(state_.document.bookmarks,
+              ElementsAre(Bookmark{12, "the cube leans"}, Bookmark{20, "late"}));
+}
+
 TEST_F(SessionFile, ReadsOldSessionsAndWritesThemUnchanged) {
   WorkbenchState other;
   other.files.waiting_session = read_session(write(kOldSession));
