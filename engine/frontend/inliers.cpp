@@ -48,9 +48,8 @@ bool more_agree(const Matrix3d& H,
 }
 
 Eigen::VectorXd gate_factors(const Window& window, int frame, const std::vector<int>& tracks) {
-  Eigen::VectorXd ratios(std::ssize(tracks));
-  for (Eigen::Index k = 0; k < ratios.size(); ++k) ratios[k] = window.gate_factor(frame, tracks[k]);
-  return ratios;
+  return Eigen::VectorXd::NullaryExpr(std::ssize(tracks),
+                                      [&](auto k) { return window.gate_factor(frame, tracks[k]); });
 }
 
 std::vector<int> indices(const std::vector<bool>& flags) {
@@ -370,15 +369,15 @@ Window make_window(const Tracks& tracks,
   window.start = tracks.start;
   window.K = intrinsic_matrix(camera);
   window.exact_reference = tracks.anchored;
-  for (int i = 0; i < tracks.frame_count(); ++i) {
-    window.timestamps_ns.push_back(recording_timestamps_ns[tracks.start + i]);
-    window.points_px.push_back(undistort_all(camera, tracks.raw_px[i]));
-  }
-  window.noise_ratio = noise_ratios(tracks);
   window.readout_direction = readout_direction(camera);
   const Eigen::Vector2d center_px(0.5 * (camera.width - 1), 0.5 * (camera.height - 1));
-  for (const Eigen::Matrix2Xd& raw_px : tracks.raw_px)
+  for (int i = 0; i < tracks.frame_count(); ++i) {
+    const Matrix2Xd& raw_px = tracks.raw_px[i];
+    window.timestamps_ns.push_back(recording_timestamps_ns[tracks.start + i]);
+    window.points_px.push_back(undistort_all(camera, raw_px));
     window.rows.emplace_back((raw_px.colwise() - center_px).transpose() * window.readout_direction);
+  }
+  window.noise_ratio = noise_ratios(tracks);
   window.lens_moves_px = lens_moves(camera, window);
   RansacOptions ransac = options.ransac;
   if (!ransac.threshold_px) ransac.threshold_px = usual_threshold_px(camera, window.points_px);

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "engine/results/result_method.h"
+#include "engine/results/result_poses.h"
 
 namespace gpo {
 
@@ -39,5 +39,12 @@ std::string span_text(const ResultPoses& poses, const Window& window);
 
 /// Returns the median angle between the rotations of cameras and those of the window [deg].
 double rotation_misfit_deg(const std::vector<std::optional<Pose>>& cameras, const Window& window);
+
+/// Returns the plane, in the map's world, through the map's points (3 x n) that the reference
+/// camera sees within 2 deg of an inlier track, by RANSAC with a fixed seed; nullopt for fewer than
+/// 10 such points. The map may be larger than the window and have other planes.
+std::optional<Plane> plane_in_view(const Eigen::Matrix3Xd& points,
+                                   const Pose& reference,
+                                   const Window& window);
 
 }  // namespace gpo

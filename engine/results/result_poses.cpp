@@ -1,11 +1,13 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
+#include "engine/results/result_poses.h"
+
 #include "engine/files/byte_cursor.h"
 #include "engine/files/refuse.h"
 #include "engine/files/text_file.h"
 #include "engine/geometry/decompositions.h"
+#include "engine/recording/companions/colmap_model.h"
 #include "engine/recording/companions/companion_files.h"
-#include "engine/results/result_method.h"
 
 #include <algorithm>
 

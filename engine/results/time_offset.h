@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "engine/results/result_method.h"
+#include "engine/results/result_poses.h"
 
 namespace gpo {
 

@@ -1,5 +1,6 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
+#include "engine/results/result_cameras.h"
 #include "engine/results/result_method.h"
 #include "tests/engine/recording/recording_folder.h"
 #include "tests/engine/results/written_results.h"
