@@ -10,8 +10,8 @@
 #include <limits>
 #include <utility>
 
-#include <Eigen/Cholesky>
 #include <Eigen/LU>
+#include <Eigen/SparseCholesky>
 
 namespace gpo {
 namespace {
@@ -21,6 +21,8 @@ using Eigen::Matrix3d;
 using Eigen::MatrixXd;
 using Eigen::Vector3d;
 using Eigen::VectorXd;
+using SparseMatrix = Eigen::SparseMatrix<double>;
+using Banded = Eigen::SimplicialLLT<SparseMatrix>;
 
 constexpr Index kOrder = 3;  // derivative that the smoothing penalizes
 
@@ -38,14 +40,14 @@ VectorXd derivative_weights(const VectorXd& t, double at, Index order) {
 
 /// Returns the third differences, the means of the third derivative over four times each, weighted
 /// by the quadratic B-splines of `b_spline`.
-MatrixXd third_differences(const VectorXd& t) {
+SparseMatrix third_differences(const VectorXd& t) {
   const Index n = t.size();
   MatrixXd D = MatrixXd::Zero(n - kOrder, n);
   for (Index k = 0; k < n - kOrder; ++k) {
     const VectorXd times = t.segment(k, kOrder + 1);
     D.row(k).segment(k, kOrder + 1) = derivative_weights(times, times.mean(), kOrder).transpose();
   }
-  return D;
+  return D.sparseView();
 }
 
 double square_after(double t, double u) { return t > u ? (t - u) * (t - u) : 0; }
@@ -73,7 +75,7 @@ void integrate(const VectorXd& t, Index i, const Add& add) {
 }
 
 /// Inner products of the B-splines.
-MatrixXd gram_matrix(const VectorXd& t) {
+SparseMatrix gram_matrix(const VectorXd& t) {
   const Index count = t.size() - kOrder;
   MatrixXd gram = MatrixXd::Zero(count, count);
   for (Index i = 0; i + 1 < t.size(); ++i) {
@@ -84,7 +86,7 @@ MatrixXd gram_matrix(const VectorXd& t) {
           gram(k, l) += weight * b_spline(t, k, u) * b_spline(t, l, u);
     });
   }
-  return gram;
+  return gram.sparseView();
 }
 
 /// Maps values at the times to derivatives there, of the natural quintic spline through them: the
@@ -98,8 +100,8 @@ struct Differentiation {
 /// third derivative, times the error for (t - u)_+^2 / 2.
 Differentiation differentiation(const VectorXd& t,
                                 Index order,
-                                const MatrixXd& differences,
-                                const Eigen::LLT<MatrixXd>& gram) {
+                                const SparseMatrix& differences,
+                                const Banded& gram) {
   const Index n = t.size(), count = n - kOrder;
   Differentiation result{MatrixXd::Zero(n, n), VectorXd::Zero(n)};
   MatrixXd products = MatrixXd::Zero(count, n);
@@ -162,13 +164,14 @@ PathTimes path_times(const VectorXd& times_s) {
   const Index n = times_s.size();
   PathTimes times{.duration_s = n > 0 ? times_s(n - 1) - times_s(0) : 0};
   if (n <= kOrder + 1) return times;
-  const MatrixXd differences = third_differences(times_s);
-  const Eigen::LLT<MatrixXd> gram(gram_matrix(times_s));
+  const SparseMatrix differences = third_differences(times_s);
+  const Banded gram(gram_matrix(times_s));
   auto first = differentiation(times_s, 1, differences, gram);
   times.first = std::move(first.map);
   times.first_variance = std::move(first.variance);
   times.second = differentiation(times_s, 2, differences, gram).map;
-  auto [roughness, vectors] = symmetric_eigen(differences.transpose() * gram.solve(differences));
+  auto [roughness, vectors] =
+      symmetric_eigen(differences.transpose() * gram.solve(MatrixXd(differences)));
   times.roughness = std::move(roughness);
   times.vectors = std::move(vectors);
   return times;
