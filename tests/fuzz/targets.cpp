@@ -10,6 +10,7 @@
 #include "engine/files/text_file.h"
 #include "engine/inspection/report/report.h"
 #include "engine/recording/bags/messages.h"
+#include "engine/recording/companions/colmap_model.h"
 #include "engine/recording/companions/companion_files.h"
 #include "engine/recording/images/images.h"
 #include "engine/recording/layouts/open_recording.h"
