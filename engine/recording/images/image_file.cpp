@@ -381,4 +381,12 @@ std::vector<FoundFile> unreadable_images(const fs::path& folder) {
   return found;
 }
 
+cv::Mat gray_if_gray(const cv::Mat& bgr) {
+  cv::Mat channels[3];
+  cv::split(bgr, channels);
+  const bool gray = cv::norm(channels[0], channels[1], cv::NORM_INF) == 0 &&
+                    cv::norm(channels[1], channels[2], cv::NORM_INF) == 0;
+  return gray ? channels[0] : bgr;
+}
+
 }  // namespace gpo

@@ -27,14 +27,6 @@ const std::vector<BagTopic> kTopics = {{"/image_raw", "sensor_msgs/Image"},
                                        {"/ground_truth", "geometry_msgs/TransformStamped"},
                                        {"/tf_static", kTransformsType}};
 
-cv::Mat gray_if_gray(const cv::Mat& bgr) {
-  cv::Mat channels[3];
-  cv::split(bgr, channels);
-  const bool gray = cv::norm(channels[0], channels[1], cv::NORM_INF) == 0 &&
-                    cv::norm(channels[1], channels[2], cv::NORM_INF) == 0;
-  return gray ? channels[0] : bgr;
-}
-
 struct Planned {
   Topic topic;
   std::int64_t time_ns;  ///< camera's clock
@@ -190,12 +182,9 @@ void check_bag(const Recording& recording,
     refuse(recording.path,
            "time {} ns is before 1970, which ROS 1 cannot store; choose a name that ends in .mcap",
            first);
-  const std::int64_t last = plan.back().time_ns;
-  const std::int64_t most_s = mcap ? std::int64_t{std::numeric_limits<std::int32_t>::max()}
-                                   : std::int64_t{std::numeric_limits<std::uint32_t>::max()};
-  if (last / second > most_s)
+  if (const std::int64_t last = plan.back().time_ns; last / second >> (mcap ? 31 : 32) > 0)
     refuse(recording.path,
-           "time {} ns is after {}, which a bag cannot store; convert to an EuRoC folder",
+           "time {} ns is too late for a bag, which ends in {}",
            last,
            mcap ? 2038 : 2106);
 }
@@ -220,14 +209,8 @@ void write_bag(const Recording& recording,
     if (progress && one.topic == Topic::images) progress(one.number + 1, recording.frame_count());
   }
   writer.finish();
-  try {
-    for (const auto& [name, text] : files) write_file(folder / name, text);
-    unfinished.finish();
-  } catch (...) {
-    std::error_code none;
-    for (const auto& [name, text] : files) fs::remove(folder / name, none);
-    throw;
-  }
+  for (const auto& [name, text] : files) write_file(folder / name, text);
+  unfinished.finish();
 }
 
 std::string camera_yaml(const Recording& recording) {

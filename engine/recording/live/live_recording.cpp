@@ -3,6 +3,7 @@
 #include "engine/recording/live/live_recording.h"
 
 #include "engine/files/refuse.h"
+#include "engine/recording/images/images.h"
 #include "engine/recording/layouts/open_recording.h"
 
 #include <cerrno>
@@ -17,14 +18,6 @@ namespace gpo {
 namespace {
 
 std::size_t bytes_of(const cv::Mat& image) { return image.total() * image.elemSize(); }
-
-/// Returns the image with one channel if it is gray.
-cv::Mat compact(const cv::Mat& bgr) {
-  cv::Mat gray, back;
-  cv::extractChannel(bgr, gray, 0);
-  cv::cvtColor(gray, back, cv::COLOR_GRAY2BGR);
-  return cv::norm(bgr, back, cv::NORM_INF) == 0 ? gray : bgr;
-}
 
 fs::path spool_file(const fs::path& output) {
   const fs::path file = fs::absolute(output).lexically_normal();
@@ -72,7 +65,7 @@ void LiveBuffer::add(const LiveImage& image) {
     images_.clear();
     bytes_ = 0;
   }
-  images_.push_back({compact(image.bgr), image.timestamp_ns, image.segment});
+  images_.push_back({gray_if_gray(image.bgr), image.timestamp_ns, image.segment});
   bytes_ += bytes_of(images_.back().bgr);
   const auto oldest_ns = image.timestamp_ns - static_cast<std::int64_t>(seconds_ * 1e9);
   while (images_.size() > 1 && (bytes_ > most_bytes_ || images_.front().timestamp_ns < oldest_ns)) {

@@ -72,7 +72,7 @@ TEST_P(WrittenBag, CannotStoreTimesFarInTheFuture) {
   const bool mcap = GetParam() == RecordingFormat::mcap;
   const fs::path file = folder.path() / (mcap ? "new.mcap" : "new.bag");
   EXPECT_THAT(error_of([&] { write_recording(changed, changed.truth, GetParam(), file); }),
-              HasSubstr(mcap ? "is after 2038, which a bag cannot store" : "is after 2106"));
+              HasSubstr(mcap ? "is too late for a bag, which ends in 2038" : "ends in 2106"));
   EXPECT_FALSE(fs::exists(file));
 }
 
