@@ -6,6 +6,7 @@
 #include "engine/frontend/inliers.h"
 #include "engine/frontend/readout_compensation.h"
 #include "engine/methods/certainty/growth.h"
+#include "engine/methods/certainty/uncertainty.h"
 #include "engine/methods/common/window_checks.h"
 #include "engine/pipeline/method_defaults.h"
 
@@ -232,6 +233,7 @@ Finished finished(const Window& window,
                   Initialization result) {
   Finished end{assessed(options.method.row(), window, std::move(result), options.lens)};
   add_gravity(window, sources, options, end);
+  if (options.lens == Lens::typical) add_typical_lens(end.initialization);
   complete_verdict(window, growth, end.initialization);
   if (options.camera_is_guess) {
     blame_guess(end.initialization.reason);

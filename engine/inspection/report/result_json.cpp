@@ -127,9 +127,8 @@ ordered_json planes_json(const Inspection& inspection) {
     if (estimate != nullptr) {
       plane["normal"] = vector_json(estimate->plane.normal);
       plane["distance"] = estimate->plane.distance;
-      plane["normal_covariance_rad2"] = nullptr;
-      if (estimate->normal_covariance)
-        plane["normal_covariance_rad2"] = matrix_json(*estimate->normal_covariance);
+      const auto& covariance = estimate->normal_covariance;
+      plane["normal_covariance_rad2"] = covariance ? matrix_json(*covariance) : nullptr;
       plane["distance_sigma"] = optional_json(estimate->distance_sigma);
     }
     if (const auto name = plane_name(inspection, number)) {
@@ -191,6 +190,11 @@ ordered_json truth_json(const WindowTruth& truth) {
   return json;
 }
 
+std::string lens_text(const Uncertainty& u) {
+  if (!u.typical_lens_sigma_deg) return "as its calibration says";
+  return u.includes_typical_lens ? "typical, exact for the normal" : "taken as exact";
+}
+
 /// World = reference camera, plane distance 1; one center covariance and distance ratio a frame.
 ordered_json uncertainty_json(const Initialization& result) {
   const Uncertainty& u = *result.uncertainty;
@@ -209,19 +213,19 @@ ordered_json uncertainty_json(const Initialization& result) {
     parts[name] = optional_json(part_deg);
   }
   parts["noise"] = std::sqrt(std::max(0.0, noise_square));
-  ordered_json json = {
-      {"of", u.own ? "method" : "window"},
-      {"rotations", to_string(u.rotations)},
-      {"sigma_px", u.sigma_px},
-      {"tracks", u.tracks},
-      {"lens", u.typical_lens_sigma_deg ? "taken as exact" : "as its calibration says"},
-      {"normal_sigma_deg", u.normal_sigma_deg},
-      {"typical_lens_sigma_deg", optional_json(u.typical_lens_sigma_deg)},
-      {"parts_deg", parts},
-      {"normal_covariance_rad2", matrix_json(u.normal_covariance)},
-      {"distance_ratios", ratios},
-      {"center_covariances",
-       array_json(u.center_covariances, [](const auto& cov) { return matrix_json(cov); })}};
+  ordered_json json = {{"of", u.own ? "method" : "window"},
+                       {"rotations", to_string(u.rotations)},
+                       {"sigma_px", u.sigma_px},
+                       {"tracks", u.tracks},
+                       {"lens", lens_text(u)},
+                       {"normal_sigma_deg", u.normal_sigma_deg},
+                       {"typical_lens_sigma_deg", optional_json(u.typical_lens_sigma_deg)},
+                       {"parts_deg", parts},
+                       {"normal_covariance_rad2", matrix_json(u.normal_covariance)},
+                       {"distance_ratios", ratios},
+                       {"center_covariances", array_json(u.center_covariances, [](const auto& cov) {
+                          return matrix_json(cov);
+                        })}};
   if (u.bias_covariance) json["bias_covariance_rad2_s2"] = matrix_json(*u.bias_covariance);
   json["bounds_deg"] = {{"known_rotations", optional_json(u.bound_known_rotations_deg)},
                         {"unknown_bias", optional_json(u.bound_unknown_bias_deg)}};
@@ -308,14 +312,11 @@ ordered_json pose_uncertainty_json(const PoseUncertainty& uncertainty) {
 }
 
 ordered_json masks_json(const Masks& masks) {
-  ordered_json json = ordered_json::array();
-  for (const Mask& mask : masks.areas) {
-    ordered_json corners = ordered_json::array();
-    for (const Eigen::Vector2d& corner : mask.corners_raw_px)
-      corners.push_back({corner.x(), corner.y()});
-    json.push_back({{"kind", to_string(mask.kind)}, {"corners_raw_px", corners}});
-  }
-  return json;
+  return array_json(masks.areas, [](const Mask& mask) -> ordered_json {
+    const auto corners =
+        array_json(mask.corners_raw_px, [](const auto& corner) { return vector_json(corner); });
+    return {{"kind", to_string(mask.kind)}, {"corners_raw_px", corners}};
+  });
 }
 
 ordered_json value_json(const SettingValue& value) {
@@ -370,7 +371,7 @@ ordered_json to_json(const Inspection& inspection) {
   if (result.uncertainty) {
     json["uncertainty"] = uncertainty_json(result);
     if (inspection.recording->camera_source == CameraSource::guess)
-      json["uncertainty"]["lens"] = "a guess, taken as exact";
+      json["uncertainty"]["lens"] = "a guess, " + lens_text(*result.uncertainty);
   }
   if (inspection.inertial) json["inertial"] = inertial_json(*inspection.inertial);
   if (inspection.metric_scale_from)

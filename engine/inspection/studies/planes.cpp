@@ -42,14 +42,6 @@ double angle_sigma_deg(const Direction& a, const Direction& b) {
   return degrees(std::sqrt(a.variance_towards(b.unit) + b.variance_towards(a.unit)));
 }
 
-std::vector<PlaneEstimate> found_planes(const Inspection& inspection) {
-  const Initialization& result = *inspection.initialization;
-  if (!result.planes.empty()) return result.planes;
-  PlaneEstimate only{.number = inspection.window->leader, .plane = result.plane};
-  if (result.uncertainty) only.normal_covariance = result.uncertainty->normal_covariance;
-  return {only};
-}
-
 PlaneName named(const PlaneEstimate& plane, const InertialAlignment& inertial) {
   PlaneName found;
   const Direction up{-inertial.gravity_m_s2.normalized(), inertial.direction_covariance};
@@ -109,6 +101,14 @@ std::optional<PlanePatch> patch_of(const Window& window,
 }
 
 }  // namespace
+
+std::vector<PlaneEstimate> found_planes(const Inspection& inspection) {
+  const Initialization& result = *inspection.initialization;
+  if (!result.planes.empty()) return result.planes;
+  PlaneEstimate only{.number = inspection.window->leader, .plane = result.plane};
+  if (result.uncertainty) only.normal_covariance = result.uncertainty->normal_covariance;
+  return {only};
+}
 
 std::optional<PlaneName> plane_name(const Inspection& inspection, int number) {
   const Initialization& result = *inspection.initialization;

@@ -8,6 +8,10 @@
 
 namespace gpo {
 
+/// Returns the estimated planes, the main plane first, also if inliers were not chosen by planes.
+/// Their covariances contain a typical lens (`add_typical_lens`).
+std::vector<PlaneEstimate> found_planes(const Inspection& inspection);
+
 /// Name of a plane by its orientation to gravity.
 struct PlaneName {
   /// floor: level, below the cameras, and the lowest such plane of the window; table: level, above

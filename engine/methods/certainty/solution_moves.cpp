@@ -256,6 +256,11 @@ std::optional<Multiple> multiple_of(const SolvedPlanes& solved,
       value, std::sqrt(squares) / curvature, value * value * curvature / (sigma_px * sigma_px)};
 }
 
+Eigen::MatrixXd moves_of_results(const Sandwich& sandwich, std::span<const SolutionMove> moves) {
+  const PlaneMotion& motion = sandwich.solved.motion;
+  return moves_of_results(motion, results_by_shared(motion, sandwich.bread), moves).results;
+}
+
 Eigen::MatrixXd joint_covariance(const Sandwich& sandwich,
                                  const Influences& influences,
                                  double degrees_of_freedom,

@@ -43,6 +43,9 @@ void add_gyro_noise(const Sandwich& sandwich, Spread& spread);
 /// Returns d(centers but the first, gyroscope, planes) / d(shared unknowns).
 Eigen::MatrixXd results_by_shared(const PlaneMotion& motion, const Bread& bread);
 
+/// Returns the displacements of the same results, one per column.
+Eigen::MatrixXd moves_of_results(const Sandwich& sandwich, std::span<const SolutionMove> moves);
+
 /// Returns the joint covariance of all camera centers but the first, the gyroscope bias if it is a
 /// shared unknown, and the planes (`Uncertainty::joint_covariance`): the shrunk sum over tracks,
 /// the sums over steps of the gyroscope's walk and over `of_image`, the moves by lens and readout,

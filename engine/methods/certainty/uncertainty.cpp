@@ -130,12 +130,12 @@ void add_held_gyro(const Sandwich& sandwich,
         degrees(std::sqrt(held.covariance(3, 3)) * moves.col(moves.cols() - 1).head<2>().norm());
 }
 
-void add_typical_lens(const Sandwich& sandwich, Uncertainty& result) {
+void set_typical_lens(const Sandwich& sandwich, Errors errors, Uncertainty& result) {
   double variance = result.normal_covariance.trace();
-  for (const SolutionMove& move :
-       moves_by_lens(sandwich, typical_lens_moves_px(sandwich.solved.window)))
-    variance += move.shared.head<2>().squaredNorm();
+  const auto moves = moves_by_lens(sandwich, typical_lens_moves_px(sandwich.solved.window));
+  for (const SolutionMove& move : moves) variance += move.shared.head<2>().squaredNorm();
   result.typical_lens_sigma_deg = degrees(std::sqrt(variance));
+  if (errors == Errors::all) result.typical_lens_moves.results = moves_of_results(sandwich, moves);
 }
 
 using OfPlanes = std::vector<std::optional<Eigen::Matrix2d>>;
@@ -282,7 +282,7 @@ std::optional<Uncertainty> uncertainty_of(const SolvedPlanes& solved,
   else
     spread.shared += prior_share(sandwich, sigma_px);
   add_plane_covariances(solved, spread.shared, neighbors, bends, result);
-  if (window.lens_moves_px.empty()) add_typical_lens(sandwich, result);
+  if (window.lens_moves_px.empty()) set_typical_lens(sandwich, errors, result);
   NoiseSpread all = marginals(motion, bread, spread);
   result.center_covariances = std::move(all.centers);
   for (const double v : all.distance_ratios) result.distance_ratio_sigmas.push_back(std::sqrt(v));
@@ -310,6 +310,29 @@ std::optional<Uncertainty> uncertainty_of(const Window& window,
   auto result = uncertainty_of({late, observations, motion}, model);
   if (result) result->neglected_row_delay_s = row_delay->seconds;
   return result;
+}
+
+void add_typical_lens(Initialization& result) {
+  if (!result.uncertainty || result.uncertainty->typical_lens_moves.results.size() == 0) return;
+  Uncertainty& u = *result.uncertainty;
+  const auto& [results, poses, row_delay_s] = u.typical_lens_moves;
+  const Eigen::MatrixXd change = square_of(results);
+  add_to_marginals(motion_of(result.plane, result.cameras), change, u);
+  if (u.joint_covariance.size() > 0) u.joint_covariance += change;
+  if (u.pose_covariance.size() > 0) u.pose_covariance += square_of(poses);
+  if (u.row_delay_sigma_s)
+    u.row_delay_sigma_s = std::hypot(*u.row_delay_sigma_s, row_delay_s.norm());
+  const auto planes_at = change.rows() - 3 * std::ssize(u.others) - 2;
+  for (std::size_t k = 0; k < result.planes.size() && k <= u.others.size(); ++k) {
+    PlaneEstimate& plane = result.planes[k];
+    const auto N = normal_tangents(plane.plane.normal);
+    const auto at = planes_at + UnknownsLayout::of_plane(static_cast<int>(k));
+    const Matrix3d by_lens = N * change.block<2, 2>(at, at) * N.transpose();
+    if (k > 0) u.others[k - 1].normal_covariance += by_lens;
+    if (plane.normal_covariance) *plane.normal_covariance += by_lens;
+    if (k > 0) plane.distance_sigma = u.others[k - 1].log_distance_sigma * plane.plane.distance;
+  }
+  u.includes_typical_lens = true;
 }
 
 }  // namespace gpo

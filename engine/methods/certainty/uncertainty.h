@@ -29,4 +29,8 @@ std::optional<Uncertainty> uncertainty_of(const Window& window,
                                           std::span<const Pose> cameras,
                                           RotationModel rotations);
 
+/// Adds a typical error of the calibration (`Uncertainty::typical_lens_moves`) to all covariances
+/// but those of `normal_covariance`, which `typical_lens_sigma_deg` complements.
+void add_typical_lens(Initialization& result);
+
 }  // namespace gpo

@@ -39,12 +39,20 @@ struct NoiseSpread {
   bool unstable = false;
 };
 
+/// Moves of a solution by one standard deviation of each parameter of a typical calibration
+/// (`typical_lens_moves_px`), one per column.
+struct TypicalLensMoves {
+  Eigen::MatrixXd results = {};      ///< rows as those of `Uncertainty::joint_covariance`
+  Eigen::MatrixXd poses = {};        ///< rows as those of `pose_covariance`
+  Eigen::MatrixXd row_delay_s = {};  ///< one row; none if it was no unknown
+};
+
 /// First-order uncertainty of a solution (engine/method.md, eq. 13 to 15) in the gauge of an
 /// initialization (world = reference camera, d = 1), the unknowns of `rotations` marginalized.
 /// Estimated from the residuals, with two-way clustering: errors of a track in all its frames may
 /// be correlated, and so may errors of all tracks in a frame. If the method takes uncertain
 /// rotations as known, their uncertainty given the tracks is propagated. The lens has the
-/// uncertainty of its calibration, or is taken as exact.
+/// uncertainty of its calibration. Without one it is taken as exact until `add_typical_lens`.
 struct Uncertainty {
   /// True: the uncertainty of the method's own estimates. False: that of the most accurate
   /// estimates from the window's tracks, at the method's solution.
@@ -68,6 +76,8 @@ struct Uncertainty {
   /// The normal's standard deviation with a typical error of the calibration
   /// (`typical_lens_moves_px`); nullopt if the calibration has standard deviations.
   std::optional<double> typical_lens_sigma_deg;
+  TypicalLensMoves typical_lens_moves;  ///< empty if the calibration has standard deviations
+  bool includes_typical_lens = false;   ///< true after `add_typical_lens`
   std::vector<Eigen::Matrix3d> center_covariances;  ///< for p_wc, one per frame; the first is zero
   /// Contribution of the tracks' noise and neighbors, given the rotations that the method holds.
   NoiseSpread noise;

@@ -115,23 +115,18 @@ MatrixXd moves_of_poses(const Model& model, const PlaneMotion& motion, const Mat
   return moves;
 }
 
-/// Returns the covariance of (centers without the first, gyroscope, planes) from that of the
-/// unknowns of results.
-MatrixXd covariance_of_results(const JointLayout& layout,
-                               const PlaneMotion& motion,
-                               MatrixXd covariance) {
+/// Returns D M, D = d(centers without the first, gyroscope, planes) / d(unknowns of results).
+MatrixXd moves_of_results(const JointLayout& layout, const PlaneMotion& motion, MatrixXd M) {
   const Index translations = first_translation(layout);
   std::vector<Index> order;
   for (int i = 1; i < layout.frames; ++i) {
     const Index at = translations + 3 * (i - 1);
-    covariance.middleRows<3>(at) = (-motion.R_wc[i] * covariance.middleRows<3>(at)).eval();
-    covariance.middleCols<3>(at) =
-        (covariance.middleCols<3>(at) * -motion.R_wc[i].transpose()).eval();
+    M.middleRows<3>(at) = (-motion.R_wc[i] * M.middleRows<3>(at)).eval();
     for (int axis = 0; axis < 3; ++axis) order.push_back(at + axis);
   }
   for (int k = 0; k < layout.shared.gyro; ++k) order.push_back(layout.shared.of_gyro() + k);
   for (int k = 0; k < layout.shared.of_gyro(); ++k) order.push_back(k);
-  return covariance(order, order);
+  return M(order, Eigen::all);
 }
 
 /// Returns gain^T prior gain.
@@ -243,7 +238,8 @@ Uncertainty uncertainty_of(const Model& model,
   result.tracks = static_cast<int>(model.tracks().size());
   result.rotations = model.options().rotations;
   add_planes(layout, state.motion, covariance, result);
-  result.joint_covariance = covariance_of_results(layout, state.motion, covariance);
+  result.joint_covariance = moves_of_results(
+      layout, state.motion, moves_of_results(layout, state.motion, covariance).transpose());
   result.pose_covariance = moves_of_poses(
       model, state.motion, moves_of_poses(model, state.motion, covariance).transpose());
   result.center_covariances.assign(layout.frames, Matrix3d::Zero());
@@ -259,6 +255,10 @@ Uncertainty uncertainty_of(const Model& model,
     result.row_delay_sigma_s = std::sqrt(covariance(layout.at_row_delay(), layout.at_row_delay()));
   if (wider > 1) result.neighbors_sigma_deg = degrees(std::sqrt((wider - 1) * of_normal));
   add_lens_parts(layout, residual_part_deg(layout, gain, scales), by_lens, result);
+  if (!layout.typical_lens) return result;
+  result.typical_lens_moves = {moves_of_results(layout, state.motion, by_lens),
+                               moves_of_poses(model, state.motion, by_lens),
+                               by_lens.middleRows(layout.at_row_delay(), layout.row_delay)};
   return result;
 }
 

@@ -12,7 +12,9 @@
 #include <functional>
 #include <limits>
 #include <optional>
+#include <random>
 
+#include <Eigen/Cholesky>
 #include <gmock/gmock.h>
 
 namespace gpo::test {
@@ -152,6 +154,51 @@ TEST(Initialize, CountsRowsInTheRecordedImage) {
     sum_us += 1e6 * (*result.row_delay_s - kRowDelay_s);
   }
   EXPECT_NEAR(sum_us / 6, 0, 0.8);  // -4 if rows were those of the undistorted image
+}
+
+/// Mean squared errors of the last camera's center and distance, divided by their covariances.
+struct NormalizedErrors {
+  double center = 0;
+  double ratio = 0;
+};
+
+/// With errors of the lens as `typical_lens_moves_px` assumes.
+NormalizedErrors errors_with_wrong_lens(Lens lens) {
+  constexpr int kWindows = 40;
+  std::mt19937_64 random(1);
+  std::normal_distribution<double> normal;
+  NormalizedErrors mean;
+  for (int k = 0; k < kWindows; ++k) {
+    const Simulation simulation = simulate(noisy(kMotions[k % 8], 200 + k, 0.2));
+    Camera camera = camera_of(simulation.window);
+    camera.sigmas.clear();
+    const double focal = 1 + 0.003 * normal(random);
+    camera.fx *= focal;
+    camera.fy *= focal;
+    camera.cx += 0.003 * camera.width * normal(random);
+    camera.cy += 0.003 * camera.width * normal(random);
+    std::vector<Frame> frames = frames_of(simulation.window);
+    for (std::size_t i = 0; i < frames.size(); ++i) frames[i].R_wc = simulation.cameras[i].R_wc;
+    const Initialization result =
+        initialize(camera, frames, nullptr, {.lens = lens}).initialization;
+    EXPECT_TRUE(result.uncertainty) << k << result.reason;
+    if (!result.uncertainty) continue;
+    const Eigen::Vector3d& p = simulation.cameras.back().p_wc;
+    const Eigen::Vector3d e = result.cameras.back().p_wc - p;
+    mean.center += e.dot(result.uncertainty->center_covariances.back().ldlt().solve(e)) / 3;
+    const double ratio =
+        result.plane.normal.dot(result.cameras.back().p_wc) - simulation.plane.normal.dot(p);
+    mean.ratio += std::pow(ratio / result.uncertainty->distance_ratio_sigmas.back(), 2);
+  }
+  return {mean.center / kWindows, mean.ratio / kWindows};
+}
+
+TEST(Initialize, CoversTypicalErrorsOfALensWithoutStandardDeviations) {
+  const NormalizedErrors typical = errors_with_wrong_lens(Lens::typical);
+  EXPECT_NEAR(typical.center, 1, 0.5);
+  EXPECT_NEAR(typical.ratio, 1, 0.7);
+  const NormalizedErrors exact = errors_with_wrong_lens(Lens::exact);
+  EXPECT_GT(exact.center, 4);
 }
 
 /// Input of `initialize`: four frames of a simulated camera.

@@ -3,6 +3,7 @@
 #include "ui/views/normals/normals_view.h"
 
 #include "engine/geometry/pose.h"
+#include "engine/inspection/studies/studies.h"
 #include "ui/views/charts/charts.h"
 #include "ui/views/scene/scene_view.h"
 
@@ -121,7 +122,9 @@ void draw_path(const DiscCanvas& canvas, const ShownResult& answer) {
 void draw_answer(const DiscCanvas& canvas, const ShownResult& answer) {
   const auto& uncertainty = answer.inspection->initialization->uncertainty;
   if (answer.current && uncertainty) {
-    const auto border = confidence_on_disc(normal_of(answer), uncertainty->normal_covariance);
+    const PlaneEstimate main = found_planes(*answer.inspection).front();
+    const auto border = confidence_on_disc(
+        normal_of(answer), main.normal_covariance.value_or(uncertainty->normal_covariance));
     canvas.polyline(border, color_of(Role::uncertain), 1.6F, true);
   }
   const ImVec2 at = canvas.at(normal_of(answer));

@@ -264,7 +264,9 @@ void add_uncertainty(const SceneStage& stage, const PlaneGrid& grid) {
              estimate.cameras[i].p_wc, uncertainty.center_covariances[i], enlarged))
       lines.lines(line, true, rgb);
   const NormalArrow arrow = normal_arrow(stage.inspection, grid);
-  const auto rim = confidence_rim(arrow, uncertainty.normal_covariance, enlarged);
+  const PlaneEstimate main = found_planes(stage.inspection).front();
+  const auto rim = confidence_rim(
+      arrow, main.normal_covariance.value_or(uncertainty.normal_covariance), enlarged);
   arrow_line.line(arrow.base, arrow.tip, color_of(Role::normal));
   for (const Vector3d& end : arrow.head) arrow_line.line(arrow.tip, end, color_of(Role::normal));
   lines.lines(rim, true, rgb);
