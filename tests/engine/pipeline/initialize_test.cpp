@@ -157,17 +157,17 @@ TEST(Initialize, CountsRowsInTheRecordedImage) {
 }
 
 /// Mean squared errors of the last camera's center and distance, divided by their covariances.
-struct NormalizedErrors {
+struct LensErrorRatios {
   double center = 0;
   double ratio = 0;
 };
 
 /// With errors of the lens as `typical_lens_moves_px` assumes.
-NormalizedErrors errors_with_wrong_lens(Lens lens) {
+LensErrorRatios errors_with_wrong_lens(Lens lens) {
   constexpr int kWindows = 40;
   std::mt19937_64 random(1);
   std::normal_distribution<double> normal;
-  NormalizedErrors mean;
+  LensErrorRatios mean;
   for (int k = 0; k < kWindows; ++k) {
     const Simulation simulation = simulate(noisy(kMotions[k % 8], 200 + k, 0.2));
     Camera camera = camera_of(simulation.window);
@@ -194,10 +194,10 @@ NormalizedErrors errors_with_wrong_lens(Lens lens) {
 }
 
 TEST(Initialize, CoversTypicalErrorsOfALensWithoutStandardDeviations) {
-  const NormalizedErrors typical = errors_with_wrong_lens(Lens::typical);
+  const LensErrorRatios typical = errors_with_wrong_lens(Lens::typical);
   EXPECT_NEAR(typical.center, 1, 0.5);
   EXPECT_NEAR(typical.ratio, 1, 0.7);
-  const NormalizedErrors exact = errors_with_wrong_lens(Lens::exact);
+  const LensErrorRatios exact = errors_with_wrong_lens(Lens::exact);
   EXPECT_GT(exact.center, 4);
 }
 
