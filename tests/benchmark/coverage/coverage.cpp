@@ -209,6 +209,7 @@ void measure(const Case& one, ErrorModel error, int windows) {
       gyroscope = test::simulated_gyroscope(options);
     }
     InitializeOptions options;
+    options.lens = Lens::exact;
     options.method_options.error = error;
     options.method_options.shutter = one.shutter;
     Camera camera{640, 480, 500, 500, 319.5, 239.5};
