@@ -144,11 +144,10 @@ Roughness likely_roughness(const VectorXd& roughness, const VectorXd& squares, d
     best.intensity = (square * rough).mean();
     return best;
   }
-  Eigen::ArrayXd all(n - kOrder);
   double least = std::numeric_limits<double>::infinity();
   double intensity = 1e-6 * variance * roughness(n - 1);
   for (int k = 0; k < kSteps; ++k, intensity *= kRatio) {
-    all = intensity / rough + variance;
+    const Eigen::ArrayXd all = intensity / rough + variance;
     const double minus_log = (all.log() + square / all).sum();
     if (minus_log >= least) continue;
     least = minus_log;
