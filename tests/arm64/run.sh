@@ -58,7 +58,7 @@ PYTHON
 
 compile() {
   mkdir -p "objects/$(dirname "$1")"
-  [ "objects/$1.o" -nt "$here/$1" ] || aarch64-linux-gnu-g++ -std=c++20 -O2 -Wall -Wextra -Werror -Wno-psabi $ccflags -c "$here/$1" -o "objects/$1.o"
+  aarch64-linux-gnu-g++ -std=c++20 -O2 -Wall -Wextra -Werror -Wno-psabi $ccflags -c "$here/$1" -o "objects/$1.o"
 }
 export -f compile
 export here ccflags="--sysroot=$sysroot -I$here -isystem $sysroot/usr/include/eigen3"
