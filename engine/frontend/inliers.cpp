@@ -283,9 +283,10 @@ WindowPlane plane_of(const Window& window,
 double image_share(const Window& window, const std::vector<int>& tracks, const Camera& camera) {
   if (tracks.size() < 3 || camera.width == 0) return 0;
   std::vector<cv::Point2f> points, hull;
-  for (const int j : tracks)
-    points.emplace_back(static_cast<float>(window.points_px[0](0, j)),
-                        static_cast<float>(window.points_px[0](1, j)));
+  for (const int j : tracks) {
+    const Eigen::Vector2d raw_px = distort(camera, window.points_px[0].col(j));
+    points.emplace_back(static_cast<float>(raw_px.x()), static_cast<float>(raw_px.y()));
+  }
   cv::convexHull(points, hull);
   return std::min(1.0, cv::contourArea(hull) / (1.0 * camera.width * camera.height));
 }
@@ -369,13 +370,9 @@ Window make_window(const Tracks& tracks,
   window.start = tracks.start;
   window.K = intrinsic_matrix(camera);
   window.exact_reference = tracks.anchored;
-  window.readout_direction = readout_direction(camera);
-  const Eigen::Vector2d center_px(0.5 * (camera.width - 1), 0.5 * (camera.height - 1));
   for (int i = 0; i < tracks.frame_count(); ++i) {
-    const Matrix2Xd& raw_px = tracks.raw_px[i];
     window.timestamps_ns.push_back(recording_timestamps_ns[tracks.start + i]);
-    window.points_px.push_back(undistort_all(camera, raw_px));
-    window.rows.emplace_back((raw_px.colwise() - center_px).transpose() * window.readout_direction);
+    window.points_px.push_back(undistort_all(camera, tracks.raw_px[i]));
   }
   window.noise_ratio = noise_ratios(tracks);
   window.lens_moves_px = lens_moves(camera, window);

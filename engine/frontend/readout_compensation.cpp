@@ -254,12 +254,8 @@ std::vector<std::vector<int>> sets_of(const Window& window) {
   return sets;
 }
 
-double rows_of(const Window& window) {
-  return 2 * std::abs(window.readout_direction.dot(window.K.topRightCorner<2, 1>())) + 1;
-}
-
 bool is_plausible(const Window& window, double row_delay_s) {
-  return std::abs(row_delay_s) * rows_of(window) < kMostReadout_s;
+  return std::abs(row_delay_s) * window.row_count() < kMostReadout_s;
 }
 
 std::optional<Estimate> estimated_from(const Window& window) {
@@ -349,6 +345,8 @@ Window with_late_rows(const Window& window, const std::function<Window(double)>&
     late.lens_moves_px = window.lens_moves_px;
     late.row_delay = window.row_delay;
     late.rows = window.rows;
+    late.image_rows = window.image_rows;
+    late.readout_direction = window.readout_direction;
     late.selection_row_delay_s = row_delay_s;
     return late;
   };
@@ -357,7 +355,7 @@ Window with_late_rows(const Window& window, const std::function<Window(double)>&
     return selected(visible_row_delay_s(window));
   Window best = window;
   for (const double readout_s : kTriedReadouts_s) {
-    Window tried = selected(readout_s / rows_of(window));
+    Window tried = selected(readout_s / window.row_count());
     if (tracks_on_planes(tried) > tracks_on_planes(best)) best = std::move(tried);
   }
   return best.planes.empty() ? window : selected(visible_row_delay_s(best));

@@ -105,6 +105,18 @@ void add_gravity(const Window& window,
     end.initialization.verdict = verdict_on(window, end.initialization, options.lens);
 }
 
+void set_readout(const Camera& camera, const Tracks& tracks, Window& window) {
+  window.readout_direction = readout_direction(camera);
+  window.image_rows = readout_lines(camera);
+  const Eigen::Vector2d center_px(0.5 * (camera.width - 1), 0.5 * (camera.height - 1));
+  for (const Eigen::Matrix2Xd& raw_px : tracks.raw_px)
+    window.rows.emplace_back((raw_px.colwise() - center_px).transpose() * window.readout_direction);
+  if (camera.readout && readout_lines(camera) > 1) {
+    const double rows = readout_lines(camera) - 1;
+    window.row_delay = {camera.readout->seconds / rows, camera.readout->sigma_s / rows};
+  }
+}
+
 }  // namespace
 
 bool uses_ransac(const InitializeOptions& options) {
@@ -142,10 +154,7 @@ Window window_of(const Tracks& tracks,
                                 .leader = options.plane - 1,
                                 .on_first_plane = on_first_plane};
   Window window = make_window(tracks, camera, timestamps_ns, selection);
-  if (camera.readout && readout_lines(camera) > 1) {
-    const double rows = readout_lines(camera) - 1;
-    window.row_delay = {camera.readout->seconds / rows, camera.readout->sigma_s / rows};
-  }
+  set_readout(camera, tracks, window);
   if (options.method_options.shutter == Shutter::global) window.row_delay = RowDelayPrior{};
   return with_late_rows(window, [&](double row_delay_s) {
     Tracks at_stamps = tracks;

@@ -4,6 +4,7 @@
 
 #include "engine/base/choice.h"
 
+#include <cmath>
 #include <cstdint>
 #include <optional>
 #include <vector>
@@ -83,6 +84,7 @@ struct Window {
   /// row of the time stamp, the image center; one vector per frame. Empty: those of `points_px`,
   /// counted from the principal point.
   std::vector<Eigen::VectorXd> rows = {};
+  int image_rows = 0;  ///< number of rows of the recorded image, or columns if read; 0: unknown
   std::vector<std::vector<bool>> inlier;  ///< one per frame and track: observed, agrees with H_i1
   std::vector<Eigen::Matrix3d> H_i1;      ///< p_i ~ H_i1 p_1 by RANSAC [px]; H_11 = I
   Inliers inliers = Inliers::per_frame;   ///< how `inlier` was chosen
@@ -118,6 +120,11 @@ struct Window {
   double row_of(int frame, int track) const {
     if (!rows.empty()) return rows[frame][track];
     return readout_direction.dot(points_px[frame].col(track) - K.topRightCorner<2, 1>());
+  }
+  /// Returns `image_rows`, or those of an image with the principal point in its middle.
+  double row_count() const {
+    if (image_rows > 0) return image_rows;
+    return 2 * std::abs(readout_direction.dot(K.topRightCorner<2, 1>())) + 1;
   }
   /// Returns the factor of the gate of an observation: the root mean square ratio of it and the one
   /// in the reference frame, at least 1, because homographies are fitted without weights.

@@ -76,6 +76,13 @@ TEST_F(MasksInTheImage, EscapeCancelsAnUnfinishedMask) {
   EXPECT_EQ(masks(), "none");
 }
 
+TEST_F(MasksInTheImage, UnfinishedMaskEndsWithItsReferenceFrame) {
+  run_line(state_, "mask not");
+  click(on_image(60, 60));
+  run_line(state_, "start 2");
+  EXPECT_FALSE(state_.view.drawn_mask);
+}
+
 TEST_F(MasksInTheImage, MenuOfTheImageOffersThem) {
   click(on_image(200, 100), 1);
   EXPECT_EQ(line_of_entry(ContextKind::area, "Leave out an area ..."), "mask not");

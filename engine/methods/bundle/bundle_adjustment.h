@@ -32,7 +32,7 @@ std::vector<Observation> track_observations(
 struct Bundle {
   std::vector<Pose> cameras;  ///< one per frame, the first one is the identity
   Eigen::Matrix3Xd points;    ///< 3 x points: reference pixel u v [px], inverse depth rho
-  /// Of the plane n.P + 1 = 0 if all points are on one; zero otherwise.
+  /// Normal of the plane n.P + 1 = 0 of all points; zero if the points are free.
   Eigen::Vector3d normal = Eigen::Vector3d::Zero();
 };
 

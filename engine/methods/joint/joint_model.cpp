@@ -251,7 +251,7 @@ Model::Rows Model::jacobian(const Prediction& p, const Track& track, const Share
     const Vector3d rate = velocity.rotation_rad_s + p.seconds * velocity.rotation_rad_s2;
     const Vector3d tau_s = shared.at_stamp.R_cw * (velocity.tau_s + p.seconds * velocity.tau_s2);
     const Vector3d y_s = at.y.cross(rate) - at.height * tau_s;
-    // At the predicted pixel: the noise of the observed one is correlated with the error.
+    // The observed row has the noise of the error; the predicted one has not.
     const double row =
         window_.row_of(shared.frame, track.column) + window_.readout_direction.dot(p.r);
     J.row(c++) = row * (y_s.transpose() * d_y);

@@ -156,15 +156,15 @@ bool converge(const Model& model, Iteration& at) {
 
 /// Returns the components of the frames' velocities that affect the uncertainty: those that the
 /// path leaves uncertain, unless they move no row by a relevant share of the noise.
-int unknown_velocity(const Iteration& at, Index tracks, const Eigen::Matrix3d& K) {
+int unknown_velocity(const Iteration& at, Index tracks, const Window& window) {
   constexpr double kLeastInformation = 1e-5;
   double tau_s = 0, rotation_rad_s = 0;
   for (const Velocity& velocity : at.state.velocities) {
     tau_s = std::max(tau_s, velocity.tau_sigma_s);
     rotation_rad_s = std::max(rotation_rad_s, velocity.rotation_sigma_rad_s);
   }
-  const double seconds = at.state.row_delay_s * std::max(K(0, 2), K(1, 2));
-  const double moved_px = seconds * K(0, 0) * std::max(tau_s, rotation_rad_s);
+  const double seconds = 0.5 * window.row_count() * at.state.row_delay_s;
+  const double moved_px = seconds * window.K(0, 0) * std::max(tau_s, rotation_rad_s);
   const double information =
       static_cast<double>(tracks) * std::pow(moved_px / at.scales.sigma_px, 2);
   if (!(information > kLeastInformation)) return 0;
@@ -199,7 +199,7 @@ std::optional<Solution> solve(const Window& window,
   find_lens_residual(with_lens, at.state, at.normals, at.scales);
   if (at.scales.lens_px > 0 && !converge(with_lens, at)) return std::nullopt;
   unknown.lens_parameters = true;
-  unknown.velocity = unknown_velocity(at, std::ssize(model.tracks()), all.K);
+  unknown.velocity = unknown_velocity(at, std::ssize(model.tracks()), all);
   const Model whole = model.with(unknown);
   linearize(whole, options.huber ? Curvature::of_loss : Curvature::of_weights, at);
   if (!at.normals.in_front) return std::nullopt;

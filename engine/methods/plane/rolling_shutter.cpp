@@ -106,9 +106,7 @@ Window without_rolling_shutter(const Window& window,
 }
 
 RowDelayPrior unknown_row_delay(const Window& window) {
-  const Vector2d center_px = window.K.topRightCorner<2, 1>();
-  const double rows = 2 * std::abs(window.readout_direction.dot(center_px)) + 1;
-  return {0, kReadoutSigma_s / rows};
+  return {0, kReadoutSigma_s / window.row_count()};
 }
 
 std::vector<Velocity> velocities_of(const Window& window,

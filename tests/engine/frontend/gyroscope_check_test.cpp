@@ -46,6 +46,19 @@ Gyroscope gyroscope(double late_s, const Matrix3d& R_gyro_camera) {
   return made;
 }
 
+TEST(RateIntegral, CoversTheFirstAndTheLastSample) {
+  Gyroscope gyroscope;
+  for (const int k : {0, 1, 2, 3}) {
+    gyroscope.timestamps_ns.push_back(10'000'000 * k);
+    gyroscope.rates_rad_s.emplace_back(k, 0, 0);
+  }
+  const RateIntegral integral(gyroscope);
+  ASSERT_TRUE(integral.mean_rate(0, 30'000'000));
+  EXPECT_NEAR(integral.mean_rate(0, 30'000'000)->x(), 1.5, 1e-12);
+  EXPECT_FALSE(integral.mean_rate(0, 30'000'001));
+  EXPECT_FALSE(integral.mean_rate(-1, 30'000'000));
+}
+
 TEST(GyroscopeCheck, AcceptsAGyroscopeThatFits) {
   EXPECT_EQ(check_gyroscope_against(images(), gyroscope(0, Matrix3d::Identity())).misfit, "");
   EXPECT_EQ(check_gyroscope_against(images(), gyroscope(0.01, Matrix3d::Identity())).misfit, "");

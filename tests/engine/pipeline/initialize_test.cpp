@@ -156,13 +156,32 @@ TEST(Initialize, CountsRowsInTheRecordedImage) {
   EXPECT_NEAR(sum_us / 6, 0, 0.8);  // -4 if rows were those of the undistorted image
 }
 
+TEST(Initialize, MeasuresThePlanesShareOfTheRecordedImage) {
+  const Window seen = simulate({.frames = 12}).window;
+  Camera camera = camera_of(seen);
+  camera.distortion = Distortion::radial_tangential;
+  camera.coefficients = {-0.28, 0.07, 0, 0};
+  camera.sigmas.assign(8, 0);
+  std::vector<Frame> frames = frames_of(seen);
+  for (Frame& frame : frames)
+    for (auto p : frame.raw_px.colwise()) p = distort(camera, p);
+  const Window window = initialize(camera, frames).window;
+  ASSERT_EQ(window.planes.size(), 1U);
+  Eigen::Vector2d least = frames[0].raw_px.rowwise().minCoeff();
+  Eigen::Vector2d most = frames[0].raw_px.rowwise().maxCoeff();
+  // The hull of 150 points lacks the corners of their bounding box.
+  const double box = (most - least).prod() / (640 * 480);
+  EXPECT_LT(window.planes[0].image_share, box);
+  EXPECT_GT(window.planes[0].image_share, 0.8 * box);
+}
+
 /// Mean squared errors of the last camera's center and distance, divided by their covariances.
 struct LensErrorRatios {
   double center = 0;
   double ratio = 0;
 };
 
-/// With errors of the lens as `typical_lens_moves_px` assumes.
+/// Initializes with errors of the lens of the size that `typical_lens_moves_px` assumes.
 LensErrorRatios errors_with_wrong_lens(Lens lens) {
   constexpr int kWindows = 40;
   std::mt19937_64 random(1);

@@ -54,6 +54,12 @@ std::vector<Vector3d> made_points(int count, double depth) {
   return points;
 }
 
+TEST(NumberText, HasNoNegativeZero) {
+  EXPECT_EQ(number_text(-0.5, 0), "0");
+  EXPECT_EQ(number_text(-0.51, 0), "-1");
+  EXPECT_EQ(number_text(-0.0004, 3), "0.000");
+}
+
 TEST(VtkCamera, SeesTheSameAsTheOrbitCamera) {
   vtkNew<vtkCamera> vtk;
   set_camera_from_orbit(*vtk, made_camera());

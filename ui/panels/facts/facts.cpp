@@ -263,7 +263,7 @@ ResultRow up_row(const InertialAlignment& inertial) {
           .tooltip = "Standard deviation of the direction of gravity"};
 }
 
-/// By the source of the scale.
+/// Texts for the sources of the scale.
 constexpr const char* kScaleMeanings[] = {
     "Standard deviation by the length between two points (0.5 px each) and by the planes",
     "The imported result is metric: its own unit is the scale",

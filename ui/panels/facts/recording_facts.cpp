@@ -35,7 +35,7 @@ std::optional<double> sigma_of(const Camera& camera, std::size_t k) {
   return k < camera.sigmas.size() ? std::optional(camera.sigmas[k]) : std::nullopt;
 }
 
-/// By the source of the camera.
+/// Texts for the values of `CameraSource`.
 constexpr const char* kSources[] = {
     "calibration file", "estimated from the images", "guessed field of view"};
 

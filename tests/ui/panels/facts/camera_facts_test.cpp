@@ -60,11 +60,13 @@ TEST(CameraFacts, HaveGapsAndSensors) {
   EXPECT_EQ(row_of(recording, "Gyroscope").tooltip, "The recording has none");
   recording.gyroscope = Gyroscope{};
   recording.gyroscope->time_offset_ns = -2'500'000;
-  for (int i = 0; i < 200; ++i)
+  for (int i = -200; i < 200; ++i)
     recording.gyroscope->timestamps_ns.push_back(std::int64_t{5'000'000} * i);
   EXPECT_EQ(row_of(recording, "Rate").value, "200 Hz");
   EXPECT_EQ(row_of(recording, "Clock").value, "-2.50 ms");
   EXPECT_EQ(row_of(recording, "Sample gaps").value, "none");
+  recording.gyroscope->timestamps_ns.back() += 100'000'000;
+  EXPECT_EQ(row_of(recording, "Sample gaps").note, "longest 0.105 s at 0.99 s");
   recording.truth = GroundTruth{"poses.csv", {std::nullopt, Pose{}}};
   recording.truth->jumps = {{660'000'000, 693'000'000, 12.5, 0.3}};
   EXPECT_EQ(row_of(recording, "Ground truth").value, "1 pose");
