@@ -18,7 +18,12 @@ using LensMatrix = Eigen::Matrix<double, kLensUnknowns, kLensUnknowns>;
 using LensColumns = Eigen::Matrix<double, Eigen::Dynamic, kLensUnknowns>;
 using Factors = Eigen::SimplicialLDLT<Sparse>;
 
+using Cell = std::array<int, 3>;  // plane and place, or place in the image
+using Moves = std::map<Cell, LensVector>;
+
 constexpr int kStretches = 10;
+constexpr int kRegions = 4;        // in each direction of the image
+constexpr double kPatch = 0.05;    // size of a part of a plane [distances]
 constexpr double kDamping = 1e-9;  // keeps blocks that lose all observations in place
 
 struct Linear {
@@ -51,7 +56,23 @@ Sparse normal_matrix(const SparseRows& J) {
   return normal;
 }
 
-LensMatrix outer_sum(const std::map<std::pair<int, int>, LensVector>& moves) {
+/// Points of several references in the same place of a plane are one texture.
+Cell patch_of(const ResidualSource& source, const Adjustment& adjustment) {
+  const Eigen::Vector3d point = adjustment.planes[source.plane].points.col(source.point);
+  const Eigen::Vector2i cell = (point.head<2>() / kPatch).array().floor().cast<int>();
+  return {source.plane, cell.x(), cell.y()};
+}
+
+Cell region_of(const PlaneData& data, const ResidualSource& source) {
+  const PlaneView& view = data.planes[source.plane].views[source.view];
+  const auto column = std::ranges::lower_bound(view.points, source.point) - view.points.begin();
+  const Eigen::Array2d place =
+      view.raw_px.col(column).array() / Eigen::Array2d(data.width, data.height);
+  const Eigen::Array2i cell = (kRegions * place).floor().cast<int>();
+  return {0, cell.x(), cell.y()};
+}
+
+LensMatrix outer_sum(const Moves& moves) {
   LensMatrix sum = LensMatrix::Zero();
   for (const auto& [key, move] : moves) sum += move * move.transpose();
   const auto groups = static_cast<double>(moves.size());
@@ -85,7 +106,7 @@ LensMatrix stretch_covariance(const std::vector<ObservedPlane>& planes,
   for (const LensVector& move : moves) mean += move / groups;
   LensMatrix sum = LensMatrix::Zero();
   for (const LensVector& move : moves) sum += (move - mean) * (move - mean).transpose();
-  return sum * (groups - 1) / std::max(1.0, groups);
+  return groups > 3 ? LensMatrix(sum * std::pow(groups - 1, 2) / groups / (groups - 3)) : sum;
 }
 
 }  // namespace
@@ -104,7 +125,7 @@ LensCertainty lens_certainty(const PlaneData& data, const Adjustment& adjustment
   const LensMatrix inverse = Y.topRows<kLensUnknowns>();
   // Each row moves the lens by its residual times its row of JY; priors have their sigma instead.
   const LensColumns JY = linear.J * Y;
-  std::map<std::pair<int, int>, LensVector> tracks;
+  Moves patches, regions;
   LensMatrix observations = LensMatrix::Zero();
   LensMatrix priors = LensMatrix::Zero();
   LensVector one = LensVector::Zero();
@@ -115,20 +136,23 @@ LensCertainty lens_certainty(const PlaneData& data, const Adjustment& adjustment
       continue;
     }
     const LensVector move = JY.row(row).transpose() * linear.r[row];
-    const std::pair track{source.plane, source.point};
-    tracks.try_emplace(track, LensVector::Zero()).first->second += move;
+    patches.try_emplace(patch_of(source, adjustment), LensVector::Zero()).first->second += move;
+    regions.try_emplace(region_of(data, source), LensVector::Zero()).first->second += move;
     one += move;
     if (row + 1 < JY.rows() && linear.sources[row + 1] == &source) continue;
     observations += one * one.transpose();
     one.setZero();
   }
-  const LensMatrix by_track = outer_sum(tracks) + priors;
+  const LensMatrix by_patch = outer_sum(patches) + priors;
+  const LensMatrix by_region = outer_sum(regions) + priors;
   const LensMatrix by_stretch = stretch_covariance(data.planes, linear, normal, factors) + priors;
   const LensVector own = noise_px * inverse.diagonal().cwiseMax(0).cwiseSqrt();
-  const LensMatrix sum = by_track + by_stretch;
-  const LensVector both = (sum - observations - priors).diagonal();
-  const LensVector variance =
-      both.cwiseMax(by_track.diagonal()).cwiseMax(by_stretch.diagonal()).cwiseMax(own.cwiseAbs2());
+  const LensMatrix sum = by_patch + by_region + by_stretch;
+  const LensVector all = (sum - 2 * (observations + priors)).diagonal();
+  const LensVector variance = all.cwiseMax(by_patch.diagonal())
+                                  .cwiseMax(by_region.diagonal())
+                                  .cwiseMax(by_stretch.diagonal())
+                                  .cwiseMax(own.cwiseAbs2());
   const LensVector wider = variance.cwiseQuotient(sum.diagonal()).cwiseSqrt();
   return {variance.cwiseSqrt(), own, wider.asDiagonal() * sum * wider.asDiagonal()};
 }

@@ -28,9 +28,11 @@ constexpr int kMostNormals = 8;                               // that may face a
 constexpr int kLeastPlaneViews = 6;
 constexpr int kRounds = 4;  // each drops outliers
 constexpr int kSteps = 2 * (static_cast<int>(kStarts.size()) + 1) + 2 * kRounds;  // progress steps
-constexpr double kFar = 4.5;      // error of an outlier, in noises
-constexpr double kKnee = 2;       // knee of Huber's loss, in noises
-constexpr double kStartKnee = 2;  // [pixel_unit]
+constexpr double kFar = 4.5;  // error of an outlier, in noises
+// The noise is small where a view resembles the reference; the others determine the lens.
+constexpr double kLeastFar = 0.5;  // the same, at least [pixel_unit]
+constexpr double kKnee = 2;        // knee of Huber's loss, in noises
+constexpr double kStartKnee = 2;   // [pixel_unit]
 // Height of a plane's points [distances]: no paper or floor is flatter, and a rougher one is none.
 constexpr double kFlattest = 3e-5;
 constexpr double kRoughest = 1e-2;
@@ -171,12 +173,15 @@ Adjustment settled(PlaneData& problem,
     if (progress) progress(kSteps - 2 * kRounds + 2 * round, kSteps);
     const ViewErrors errors = reprojection_errors(problem, now);
     const double noise_px = noise_of(errors);
+    const double far_px =
+        std::max(kFar * noise_px,
+                 kLeastFar * pixel_unit(camera_of(now.lens, problem.width, problem.height)));
     problem.options.knee_px = kKnee * noise_px;
     problem.options.prior_px = problem.options.noise_px = noise_px;
     if (flat.moved >= kLeastMotionForHeights)
       problem.options.height_sigma =
           round == 0 ? kRoughest : std::clamp(height_of(problem.planes, now), kFlattest, kRoughest);
-    problem.planes = without_far(problem.planes, errors, kFar * noise_px, left_out);
+    problem.planes = without_far(problem.planes, errors, far_px, left_out);
     now = adjust(problem, now);
   }
   return now;

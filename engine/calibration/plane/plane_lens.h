@@ -152,13 +152,13 @@ ViewErrors reprojection_errors(const PlaneData& problem, const Adjustment& adjus
 struct LensCertainty {
   LensVector sigma;      ///< robust
   LensVector own_sigma;  ///< with independent observations
-  /// With these standard deviations and the correlations of both clusterings together.
+  /// With these standard deviations and the correlations of all clusterings together.
   Eigen::Matrix<double, kLensUnknowns, kLensUnknowns> covariance;
 };
 
-/// Estimates the uncertainty of an adjusted lens (engine/method.md, 20). The errors of a point, and
-/// those of a stretch of time (a tenth of the views), count as one. `noise_px` is the noise of one
-/// coordinate.
+/// Estimates the uncertainty of an adjusted lens (engine/method.md, 20). The errors of a place of
+/// a plane, of a region of the image, or of a stretch of time (a tenth of the views) count as one.
+/// `noise_px` is the noise of one coordinate.
 LensCertainty lens_certainty(const PlaneData& problem,
                              const Adjustment& adjustment,
                              double noise_px);
