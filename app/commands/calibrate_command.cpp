@@ -145,29 +145,33 @@ int calibrate_by_plane(const CalibrateArguments& arguments, const fs::path& reco
   return write_camera(arguments, calibration);
 }
 
-/// Returns the recording's camera; a camera without values if the recording cannot be opened, for
-/// example because its calibration is of another size.
-Camera known_camera(const CalibrateArguments& arguments, const fs::path& recording) {
+/// Returns null if the recording cannot be opened, for example because its calibration is of
+/// another size.
+std::shared_ptr<const Recording> opened_or_null(const CalibrateArguments& arguments,
+                                                const fs::path& recording) {
   try {
-    return open_recording(recording, {.tracks = {}, .topics = arguments.topics})->camera;
+    return open_recording(recording, {.tracks = {}, .topics = arguments.topics});
   } catch (const InputError&) {
-    return {};
+    return nullptr;
   }
 }
 
 int calibrate_by_board(const CalibrateArguments& arguments, const fs::path& recording) {
   constexpr int kMaxFrames = 600;
-  const CalibrationOptions options = options_of(arguments);
+  CalibrationOptions options = options_of(arguments);
   const Board board = board_of(arguments, recording);
   warn_of_large_square(board.square_m);
   const auto images = open_images(recording, kCacheBytes, arguments.topics);
+  std::vector<std::int64_t> times_ns;
+  if (const auto opened = opened_or_null(arguments, recording)) {
+    times_ns = opened->timestamps_ns;
+    options.readout = opened->camera.readout;
+    options.readout_direction = opened->camera.readout_direction;
+  }
   ProgressBar bar("looking for the board");
-  const auto search = find_calibration_views(*images, board, kMaxFrames, std::ref(bar));
-  CameraCalibration calibration = calibrate_camera(search, board, options);
+  const auto search = find_calibration_views(*images, board, kMaxFrames, std::ref(bar), times_ns);
+  const CameraCalibration calibration = calibrate_camera(search, board, options);
   if (!calibration.ok) return report_failure(calibration.reason);
-  const Camera known = known_camera(arguments, recording);
-  calibration.camera.readout = known.readout;
-  calibration.camera.readout_direction = known.readout_direction;
   return write_camera(arguments, calibration);
 }
 

@@ -85,6 +85,14 @@ std::string seen(const PlaneLens& lens) {
       lens.moved);
 }
 
+std::string readout_row(const Camera& camera) {
+  if (!camera.readout) return "";
+  return row("readout",
+             "{:10.2f} +- {:.2f} ms, first row to last",
+             1e3 * camera.readout->seconds,
+             1e3 * camera.readout->sigma_s);
+}
+
 std::string readout(const PlaneLens& lens) {
   return fmt::format("{:10.3f} +- {:.3f} frame intervals, first row to last",
                      lens.lens[kReadout],
@@ -184,7 +192,7 @@ std::string to_text(const CameraCalibration& calibration) {
              calibration.found,
              calibration.examined) +
          row("RMS", "{:.3f} px", calibration.rms_px) + parameter_rows(calibration.camera) +
-         row("seen", "{}", seen(calibration)) +
+         readout_row(calibration.camera) + row("seen", "{}", seen(calibration)) +
          (calibration.bend_m > 0 ? row("board", "{}", board(calibration)) : "") +
          warning_lines("warning     ", calibration.warnings);
 }

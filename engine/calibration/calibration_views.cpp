@@ -21,6 +21,7 @@ namespace {
 constexpr int kLeastCorners = 8;
 constexpr int kCornersOfTag = 4;
 constexpr double kMostBlurred = 2;  // times the median width of edges
+constexpr int kRow = 5;             // images in a row that determine velocities
 
 using Feature = Eigen::Matrix<double, 6, 1>;
 
@@ -115,6 +116,67 @@ std::optional<Feature> feature_of(const CalibrationView& view,
   return feature;
 }
 
+std::vector<int> frames_to_search(int count, int most, bool in_rows) {
+  const int length = in_rows && count > most ? std::min(kRow, most) : 1;
+  const int places = std::min(count, most) / length;
+  std::vector<int> frames;
+  for (int place = 0; place < places; ++place)
+    for (int k = 0; k < length; ++k)
+      frames.push_back(static_cast<int>(std::int64_t{place} * (count - length + 1) / places) + k);
+  return frames;
+}
+
+/// Returns whether the corners move evenly from `a` over `b` to `c`. Photos do not, nor do boards
+/// whose corners are numbered from another end.
+bool moves_evenly(const CalibrationView& a, const CalibrationView& b, const CalibrationView& c) {
+  constexpr double kMostChange = 0.5, kMostChange_px = 2;
+  std::vector<double> excess;
+  for (std::size_t j = 0; j < b.corners.size(); ++j) {
+    const double moved = (c.corners[j] - a.corners[j]).norm();
+    const double change = (c.corners[j] - 2 * b.corners[j] + a.corners[j]).norm();
+    if (std::isfinite(change)) excess.push_back(change - kMostChange * moved - kMostChange_px);
+  }
+  return !excess.empty() && median(std::move(excess)) < 0;
+}
+
+/// Returns the derivative at time 0 of the polynomial through the values at 0 and at other times,
+/// as weights of the differences from the value at 0 (Lagrange).
+std::vector<double> slope_weights(const std::vector<double>& times_s) {
+  std::vector<double> weights;
+  for (const double t : times_s) {
+    double weight = 1 / t;
+    for (const double other : times_s)
+      if (other != t) weight *= other / (other - t);
+    weights.push_back(weight);
+  }
+  return weights;
+}
+
+void add_velocities(std::vector<CalibrationView>& views,
+                    std::span<const std::int64_t> frame_times_ns) {
+  const auto count = std::ssize(views);
+  const auto in_row = [&](std::ptrdiff_t i, std::ptrdiff_t other) {
+    return other >= 0 && other < count && views[other].frame - views[i].frame == other - i;
+  };
+  for (std::ptrdiff_t i = 1; i + 1 < count; ++i) {
+    CalibrationView& view = views[i];
+    if (!in_row(i, i - 1) || !in_row(i, i + 1)) continue;
+    if (!moves_evenly(views[i - 1], view, views[i + 1])) continue;
+    std::vector<std::ptrdiff_t> others{i - 1, i + 1};
+    if (in_row(i, i - 2) && in_row(i, i + 2) && moves_evenly(views[i - 2], view, views[i + 2]))
+      others.insert(others.end(), {i - 2, i + 2});
+    std::vector<double> times_s;
+    for (const std::ptrdiff_t k : others)
+      times_s.push_back(
+          1e-9 * static_cast<double>(frame_times_ns[views[k].frame] - frame_times_ns[view.frame]));
+    const std::vector<double> weights = slope_weights(times_s);
+    view.velocities_px_s.assign(view.corners.size(), Eigen::Vector2d::Zero());
+    for (std::size_t k = 0; k < others.size(); ++k)
+      for (std::size_t j = 0; j < view.corners.size(); ++j)
+        view.velocities_px_s[j] += weights[k] * (views[others[k]].corners[j] - view.corners[j]);
+  }
+}
+
 struct Candidate {
   const CalibrationView* view;
   Feature feature;
@@ -127,9 +189,13 @@ std::vector<Candidate> sharp_candidates(const BoardSearch& search, const Board& 
   std::vector<double> widths;
   for (const auto& view : search.views) widths.push_back(view.edge_px);
   const double typical = median(widths);
+  const auto moving = std::ranges::count_if(
+      search.views, [](const CalibrationView& view) { return !view.velocities_px_s.empty(); });
+  const bool only_moving = 2 * moving > std::ssize(search.views);
   std::vector<Candidate> candidates;
   for (const auto& view : search.views) {
     if (view.edge_px > kMostBlurred * typical) continue;
+    if (only_moving && view.velocities_px_s.empty()) continue;
     const auto feature = feature_of(view, board, search.size, search.views.back().frame);
     if (!feature) continue;
     candidates.push_back({&view, *feature, std::min(1.5, typical / view.edge_px)});
@@ -166,11 +232,10 @@ std::optional<cv::Size> counts_in_images(const FrameCache& images,
 BoardSearch find_calibration_views(const FrameCache& images,
                                    const Board& board,
                                    int most_frames,
-                                   const std::function<void(int done, int of)>& progress) {
-  const int taken = std::min(images.count(), most_frames);
-  std::vector<int> frames(static_cast<std::size_t>(taken));
-  for (int i = 0; i < taken; ++i)
-    frames[i] = static_cast<int>(std::int64_t{i} * images.count() / taken);
+                                   const std::function<void(int done, int of)>& progress,
+                                   std::span<const std::int64_t> frame_times_ns) {
+  const bool timed = std::ssize(frame_times_ns) == images.count();
+  const std::vector<int> frames = frames_to_search(images.count(), most_frames, timed);
   BoardSearch search;
   search.size = images.bgr(frames.front()).size();
   std::mutex mutex;
@@ -196,6 +261,7 @@ BoardSearch find_calibration_views(const FrameCache& images,
   for_each_image(images, frames, current_stop(), patch);
   check_stop();
   std::ranges::sort(search.views, {}, &CalibrationView::frame);
+  if (timed) add_velocities(search.views, frame_times_ns);
   const bool is_chessboard = !board.markers && !board.tags;
   if (is_chessboard && search.views.empty())
     search.other_counts = counts_in_images(images, frames, board);

@@ -21,14 +21,25 @@ struct Correspondences {
   std::vector<std::vector<cv::Point2f>> pixels;
 };
 
-Correspondences correspondences(const std::vector<CalibrationView>& views, const Board& board) {
+/// Time from the middle row until the row of a pixel is read [readouts].
+double read_later(const Camera& camera, const Eigen::Vector2d& raw_px) {
+  const Eigen::Vector2d middle = 0.5 * Eigen::Vector2d(camera.width - 1, camera.height - 1);
+  return readout_direction(camera).dot(raw_px - middle) / (readout_lines(camera) - 1);
+}
+
+Correspondences correspondences(const std::vector<CalibrationView>& views,
+                                const Board& board,
+                                const LensStart& start) {
   const auto all = board_points(board);
   Correspondences result;
   for (const CalibrationView& view : views) {
     auto& points = result.points.emplace_back();
     auto& pixels = result.pixels.emplace_back();
     for (std::size_t i = 0; i < all.size(); ++i) {
-      const Eigen::Vector2f px = view.corners[i].cast<float>();
+      Eigen::Vector2d at = view.corners[i];
+      if (start.readout_s != 0 && !view.velocities_px_s.empty())
+        at -= start.readout_s * read_later(start.camera, at) * view.velocities_px_s[i];
+      const Eigen::Vector2f px = at.cast<float>();
       if (!px.allFinite()) continue;
       points.emplace_back(static_cast<float>(all[i].x()), static_cast<float>(all[i].y()), 0.0F);
       pixels.emplace_back(px.x(), px.y());
@@ -194,7 +205,7 @@ std::optional<LensFit> fit_lens(const std::vector<CalibrationView>& views,
                                 const LensStart& start) {
   check_stop();
   try {
-    const Correspondences seen = correspondences(views, board);
+    const Correspondences seen = correspondences(views, board, start);
     LensFit solution = start.camera.distortion == Distortion::equidistant
                            ? fit_equidistant(seen, start)
                            : fit_radial_tangential(seen, start, board.columns);
