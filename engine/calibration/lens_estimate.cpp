@@ -90,7 +90,7 @@ std::optional<Readout> likely_readout(const Views& views,
 
 /// Solutions without one of the blocks of time each.
 struct Jackknife {
-  Eigen::MatrixXd covariance;  ///< of the parameters; 0 x 0 if one of the solutions fails
+  Eigen::MatrixXd covariance;  ///< that of the parameters, 0 x 0 if a solution fails
   double readout_sigma_s = 0;
 };
 

@@ -131,7 +131,7 @@ TEST(BoardReadout, FollowsItsDirectionAndAGivenOne) {
   EXPECT_NEAR(known.camera.fx, found.camera.fx, found.camera.sigmas[0]);
 }
 
-TEST(BoardReadout, OfAGlobalShutterIsLeftOut) {
+TEST(BoardReadout, IsLeftOutForAGlobalShutter) {
   for (const std::uint64_t seed : {1, 2}) {
     BoardSearch search = film({}, seed);
     const auto found = calibrate_camera(search, kFilmedBoard);
