@@ -200,7 +200,8 @@ int calibrate_gyroscope(const CalibrateArguments& arguments, const fs::path& pat
   ProgressBar bar("rotations from images");
   const auto windows = rotations_over_recording(recording, kWindows, std::ref(bar), current_stop());
   check_stop();
-  const GyroscopeFit fit = fit_gyroscope(windows, *recording->gyroscope);
+  GyroscopeFit fit = fit_gyroscope(windows, *recording->gyroscope);
+  add_lens_error(fit, recording->camera);
   if (fit.windows > 0) {
     fmt::print("{}", to_text(fit, *recording->gyroscope));
     if (arguments.figure) write_rate_figure(*arguments.figure, windows, *recording, fit);

@@ -364,4 +364,13 @@ GyroscopeFit fit_gyroscope(const std::vector<ImageRotations>& windows, const Gyr
   return fit;
 }
 
+void add_lens_error(GyroscopeFit& fit, const Camera& camera) {
+  const double typical_px = kTypicalLensShare * camera.width;
+  const double cx_px = camera.sigmas.empty() ? typical_px : camera.sigmas[2];
+  const double cy_px = camera.sigmas.empty() ? typical_px : camera.sigmas[3];
+  Vector3d& sigma_deg = fit.rotation_sigma_deg;
+  sigma_deg.x() = std::hypot(sigma_deg.x(), degrees(cy_px / camera.fy));
+  sigma_deg.y() = std::hypot(sigma_deg.y(), degrees(cx_px / camera.fx));
+}
+
 }  // namespace gpo

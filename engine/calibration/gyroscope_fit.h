@@ -42,4 +42,9 @@ struct GyroscopeFit {
 /// better.
 GyroscopeFit fit_gyroscope(const std::vector<ImageRotations>& windows, const Gyroscope& gyroscope);
 
+/// Adds the error of the calibration to the standard deviations of the rotation: a wrong principal
+/// point turns the camera's axes. Without standard deviations it is a typical one
+/// (`kTypicalLensShare`).
+void add_lens_error(GyroscopeFit& fit, const Camera& camera);
+
 }  // namespace gpo

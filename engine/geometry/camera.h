@@ -78,6 +78,9 @@ std::optional<std::string> coefficient_fault(const Camera& camera);
 /// is unknown.
 bool has_near_principal_point(const Camera& camera);
 inline constexpr double kLeastReadoutSigma_s = 1e-4;
+/// Standard deviations of a typical calibration: of the focal length [focal lengths], and of the
+/// principal point [image widths].
+inline constexpr double kTypicalLensShare = 0.003;
 /// With a standard deviation of 2 %, at least `kLeastReadoutSigma_s`.
 Readout readout_of(double seconds);
 /// Returns the unit vector along which the image is read.

@@ -110,7 +110,6 @@ double homography_error_px(const Window& window) {
 }
 
 std::vector<std::vector<Eigen::Matrix2Xd>> typical_lens_moves_px(const Window& window) {
-  constexpr double kShare = 0.003;
   const Eigen::Vector2d center = window.K.topRightCorner<2, 1>();
   const double width_px = 2 * center.x() + 1;
   const double corner_px = center.norm();
@@ -120,10 +119,10 @@ std::vector<std::vector<Eigen::Matrix2Xd>> typical_lens_moves_px(const Window& w
     const Eigen::Matrix2Xd p = points.colwise() - center;
     const Eigen::RowVectorXd r2 = p.colwise().squaredNorm() / (corner_px * corner_px);
     const Eigen::Matrix2Xd cubic = moved_px / corner_px * (p * r2.asDiagonal());
-    moves[0].push_back(kShare * p);
+    moves[0].push_back(kTypicalLensShare * p);
     for (int axis = 0; axis < 2; ++axis) {
       Eigen::Matrix2Xd shift = Eigen::Matrix2Xd::Zero(2, p.cols());
-      shift.row(axis).setConstant(kShare * width_px);
+      shift.row(axis).setConstant(kTypicalLensShare * width_px);
       moves[1 + axis].push_back(std::move(shift));
     }
     moves[3].push_back(cubic);

@@ -108,6 +108,21 @@ TEST(GyroscopeFit, EstimatesRotationClockAndBias) {
   EXPECT_LT(squares / numbers, 1.5);
 }
 
+TEST(GyroscopeFit, AWrongPrincipalPointTurnsTheCameraAxes) {
+  GyroscopeFit fit;
+  fit.rotation_sigma_deg = {0.3, 0, 0.1};
+  Camera camera{640, 480, 500, 400, 320, 240, Distortion::none, {}};
+  GyroscopeFit typical = fit;
+  add_lens_error(typical, camera);
+  EXPECT_NEAR(typical.rotation_sigma_deg.x(), std::hypot(0.3, degrees(1.92 / 400)), 1e-12);
+  EXPECT_NEAR(typical.rotation_sigma_deg.y(), degrees(1.92 / 500), 1e-12);
+  EXPECT_EQ(typical.rotation_sigma_deg.z(), 0.1);
+  camera.sigmas = {1, 1, 5, 0};
+  add_lens_error(fit, camera);
+  EXPECT_EQ(fit.rotation_sigma_deg.x(), 0.3);
+  EXPECT_NEAR(fit.rotation_sigma_deg.y(), degrees(5.0 / 500), 1e-12);
+}
+
 TEST(GyroscopeFit, LeavesOutWindowsThatDisagree) {
   const Truth truth{any_rotation(3), 0.04, {0.01, -0.02, 0.005}};
   Recorded recorded = record(truth, 6, 0.001, 3);
