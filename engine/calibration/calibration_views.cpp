@@ -126,55 +126,12 @@ std::vector<int> frames_to_search(int count, int most, bool in_rows) {
   return frames;
 }
 
-/// Returns whether the corners move evenly from `a` over `b` to `c`. Photos do not, nor do boards
-/// whose corners are numbered from another end.
-bool moves_evenly(const CalibrationView& a, const CalibrationView& b, const CalibrationView& c) {
-  constexpr double kMostChange = 0.5, kMostChange_px = 2;
-  std::vector<double> excess;
-  for (std::size_t j = 0; j < b.corners.size(); ++j) {
-    const double moved = (c.corners[j] - a.corners[j]).norm();
-    const double change = (c.corners[j] - 2 * b.corners[j] + a.corners[j]).norm();
-    if (std::isfinite(change)) excess.push_back(change - kMostChange * moved - kMostChange_px);
-  }
-  return !excess.empty() && median(std::move(excess)) < 0;
-}
-
-/// Returns the derivative at time 0 of the polynomial through the values at 0 and at other times,
-/// as weights of the differences from the value at 0 (Lagrange).
-std::vector<double> slope_weights(const std::vector<double>& times_s) {
-  std::vector<double> weights;
-  for (const double t : times_s) {
-    double weight = 1 / t;
-    for (const double other : times_s)
-      if (other != t) weight *= other / (other - t);
-    weights.push_back(weight);
-  }
-  return weights;
-}
-
 void add_velocities(std::vector<CalibrationView>& views,
                     std::span<const std::int64_t> frame_times_ns) {
-  const auto count = std::ssize(views);
-  const auto in_row = [&](std::ptrdiff_t i, std::ptrdiff_t other) {
-    return other >= 0 && other < count && views[other].frame - views[i].frame == other - i;
-  };
-  for (std::ptrdiff_t i = 1; i + 1 < count; ++i) {
-    CalibrationView& view = views[i];
-    if (!in_row(i, i - 1) || !in_row(i, i + 1)) continue;
-    if (!moves_evenly(views[i - 1], view, views[i + 1])) continue;
-    std::vector<std::ptrdiff_t> others{i - 1, i + 1};
-    if (in_row(i, i - 2) && in_row(i, i + 2) && moves_evenly(views[i - 2], view, views[i + 2]))
-      others.insert(others.end(), {i - 2, i + 2});
-    std::vector<double> times_s;
-    for (const std::ptrdiff_t k : others)
-      times_s.push_back(
-          1e-9 * static_cast<double>(frame_times_ns[views[k].frame] - frame_times_ns[view.frame]));
-    const std::vector<double> weights = slope_weights(times_s);
-    view.velocities_px_s.assign(view.corners.size(), Eigen::Vector2d::Zero());
-    for (std::size_t k = 0; k < others.size(); ++k)
-      for (std::size_t j = 0; j < view.corners.size(); ++j)
-        view.velocities_px_s[j] += weights[k] * (views[others[k]].corners[j] - view.corners[j]);
-  }
+  BoardCorners corners;
+  for (const CalibrationView& view : views) corners.emplace(view.frame, view.corners);
+  for (CalibrationView& view : views)
+    view.velocities_px_s = corner_velocities(corners, view.frame, frame_times_ns);
 }
 
 struct Candidate {

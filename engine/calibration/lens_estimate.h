@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "engine/calibration/calibrate.h"
+#include "engine/calibration/lens_fit.h"
 
 #include <optional>
 #include <string>

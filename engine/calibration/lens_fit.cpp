@@ -1,7 +1,8 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
+#include "engine/calibration/lens_fit.h"
+
 #include "engine/base/stop.h"
-#include "engine/calibration/calibrate.h"
 #include "engine/geometry/decompositions.h"
 #include "engine/geometry/pose.h"
 #include "engine/recording/board/board.h"
@@ -20,12 +21,6 @@ struct Correspondences {
   std::vector<std::vector<cv::Point3f>> points;
   std::vector<std::vector<cv::Point2f>> pixels;
 };
-
-/// Time from the middle row until the row of a pixel is read [readouts].
-double read_later(const Camera& camera, const Eigen::Vector2d& raw_px) {
-  const Eigen::Vector2d middle = 0.5 * Eigen::Vector2d(camera.width - 1, camera.height - 1);
-  return readout_direction(camera).dot(raw_px - middle) / (readout_lines(camera) - 1);
-}
 
 Correspondences correspondences(const std::vector<CalibrationView>& views,
                                 const Board& board,

@@ -19,10 +19,9 @@ std::optional<Plane> plane_of_board(const Recording& recording,
                                     int frame,
                                     const std::optional<Pose>& T_truth_camera) {
   if (!recording.board || !recording.images || !T_truth_camera) return std::nullopt;
-  const auto corners = find_board(recording.images->gray(frame), *recording.board);
-  const auto found = board_pose(corners, *recording.board, recording.camera);
+  const auto found = board_truth(recording, std::vector{frame}).poses.front();
   if (!found) return std::nullopt;
-  return plane_in_camera(kBoardPlane, found->pose * inverse(*T_truth_camera));
+  return plane_in_camera(kBoardPlane, *found * inverse(*T_truth_camera));
 }
 
 std::vector<Eigen::Matrix3d> true_rotations(const WindowTruth* truth, int start) {

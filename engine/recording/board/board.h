@@ -82,6 +82,16 @@ std::vector<Eigen::Vector2d> project_board(const Board& board,
 /// turns if they are equal and even, only the identity with markers or tags.
 std::vector<Pose> board_symmetries(const Board& board);
 
+/// Corners by frame, as `find_board` returns them.
+using BoardCorners = std::map<int, std::vector<Eigen::Vector2d>>;
+
+/// Returns the velocities of a frame's corners [raw px/s] by up to two frames on each side; empty
+/// if fewer than two neighbors show the board, or if it does not move evenly from one to the next.
+/// The frame must be in `corners`.
+std::vector<Eigen::Vector2d> corner_velocities(const BoardCorners& corners,
+                                               int frame,
+                                               std::span<const std::int64_t> timestamps_ns);
+
 /// Called after each processed frame, by one thread at a time.
 using BoardProgress = std::function<void(int done, int of)>;
 
@@ -89,7 +99,10 @@ using BoardProgress = std::function<void(int done, int of)>;
 /// `frames`. A frame has none if the board is not found, or if the RMS of its fit exceeds both
 /// 0.5 px and four times the median of all frames.
 ///
-/// Frames are processed in parallel. The recording's cache folder, if any, keeps the results so
+/// If the camera has a readout time, the corners are moved to the time stamp by their velocities in
+/// neighboring frames. A frame without velocities then has no pose.
+///
+/// Frames are processed in parallel. The recording's cache folder, if any, keeps the corners so
 /// that each frame is processed only once. Among symmetric poses a frame gets the one nearest in
 /// rotation to the previous frame's, and the first frame the one whose rows run to the right.
 ///
@@ -115,16 +128,13 @@ std::optional<PoseUncertainty> median_uncertainty(
 /// "0.31 mm, 0.05 deg, board normal 0.04 deg (1 sigma; fit 0.21 px RMS)".
 std::string uncertainty_text(const PoseUncertainty& uncertainty);
 
-/// Results by frame before a symmetric pose is chosen; nullopt if the frame shows no board.
-using BoardViews = std::map<int, std::optional<BoardPose>>;
-
-/// Cache file for these images (paths, sizes, times), camera and board; nullopt without a folder.
+/// Cache file for these images (paths, sizes, times) and board; nullopt without a folder.
 std::optional<fs::path> board_cache_file(const Recording& recording);
 
-/// Empty if the file is missing, truncated, damaged or no cache of board views.
-BoardViews load_board_views(const fs::path& file);
+/// Empty if the file is missing, truncated, damaged or no cache of corners.
+BoardCorners load_board_corners(const fs::path& file);
 
-/// Adds views to the file. Ignores write errors: the views will be computed again.
-void save_board_views(const fs::path& file, const BoardViews& views);
+/// Adds corners to the file. Ignores write errors: they will be searched again.
+void save_board_corners(const fs::path& file, const BoardCorners& corners);
 
 }  // namespace gpo

@@ -1,6 +1,7 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/base/error.h"
+#include "engine/base/parallel.h"
 #include "engine/base/stop.h"
 #include "engine/files/byte_cursor.h"
 #include "engine/files/output_file.h"
@@ -11,10 +12,10 @@
 #include <algorithm>
 #include <limits>
 #include <numeric>
+#include <set>
 #include <system_error>
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 #include <opencv2/core/version.hpp>
 
 namespace gpo {
@@ -24,30 +25,32 @@ constexpr double kMostTimesMedian = 4;
 constexpr double kAlwaysGood = 0.5;  ///< a blurred frame among very sharp ones [pixel_unit]
 constexpr int kMedianFrames = 30;
 
-BoardViews views_of(const Recording& recording,
-                    const std::vector<int>& frames,
-                    const std::stop_token& stop,
-                    const BoardProgress& progress) {
+/// Results by frame before a symmetric pose is chosen.
+using BoardPoses = std::map<int, BoardPose>;
+
+BoardCorners corners_of(const Recording& recording,
+                        const std::vector<int>& frames,
+                        const std::stop_token& stop,
+                        const BoardProgress& progress) {
   const auto cache = board_cache_file(recording);
-  BoardViews views = cache ? load_board_views(*cache) : BoardViews{};
+  BoardCorners corners = cache ? load_board_corners(*cache) : BoardCorners{};
   std::vector<int> missing;
   std::ranges::copy_if(
-      frames, std::back_inserter(missing), [&](int frame) { return !views.contains(frame); });
-  if (missing.empty()) return views;
+      frames, std::back_inserter(missing), [&](int frame) { return !corners.contains(frame); });
+  if (missing.empty()) return corners;
   const int of = static_cast<int>(frames.size());
   int done = of - static_cast<int>(missing.size());
-  BoardViews found;
+  BoardCorners found;
   std::mutex mutex;
   const auto process = [&](int frame, const cv::Mat& gray) {
-    const Board& board = *recording.board;
-    const auto pose = board_pose(find_board(gray, board), board, recording.camera);
+    auto in_frame = find_board(gray, *recording.board);
     const std::scoped_lock lock(mutex);
-    found[frame] = pose;
+    found[frame] = std::move(in_frame);
     if (progress) progress(++done, of);
   };
   const auto save = [&] {
     const StopScope to_the_end(nullptr);
-    if (cache && !found.empty()) save_board_views(*cache, found);
+    if (cache && !found.empty()) save_board_corners(*cache, found);
   };
   try {
     for_each_image(*recording.images, missing, stop, process);
@@ -56,16 +59,66 @@ BoardViews views_of(const Recording& recording,
     throw;
   }
   save();
-  views.merge(found);
-  return views;
+  corners.merge(found);
+  return corners;
+}
+
+double readout_s(const Recording& recording) {
+  return recording.camera.readout ? recording.camera.readout->seconds : 0;
+}
+
+/// Adds the frames that determine the corners' velocities, if these matter.
+std::vector<int> with_neighbors(const Recording& recording, const std::vector<int>& frames) {
+  constexpr int kReach = 2;
+  if (readout_s(recording) == 0) return frames;
+  std::set<int> all;
+  for (const int frame : frames)
+    for (int k = -kReach; k <= kReach; ++k)
+      if (frame + k >= 0 && frame + k < recording.frame_count()) all.insert(frame + k);
+  return {all.begin(), all.end()};
+}
+
+/// Returns the corners at the time stamp of the frame; empty if that is unknown.
+std::vector<Eigen::Vector2d> at_time_stamp(const Recording& recording,
+                                           const BoardCorners& corners,
+                                           int frame) {
+  std::vector<Eigen::Vector2d> moved = corners.at(frame);
+  if (moved.empty() || readout_s(recording) == 0) return moved;
+  const auto velocities_px_s = corner_velocities(corners, frame, recording.timestamps_ns);
+  if (velocities_px_s.empty()) return {};
+  for (std::size_t j = 0; j < moved.size(); ++j)
+    moved[j] -= readout_s(recording) * read_later(recording.camera, moved[j]) * velocities_px_s[j];
+  return moved;
+}
+
+BoardPoses poses_of(const Recording& recording,
+                    const std::vector<int>& frames,
+                    const std::stop_token& stop,
+                    const BoardProgress& progress) {
+  const BoardCorners corners =
+      corners_of(recording, with_neighbors(recording, frames), stop, progress);
+  std::vector<int> found;
+  std::ranges::copy_if(
+      frames, std::back_inserter(found), [&](int frame) { return corners.contains(frame); });
+  BoardPoses poses;
+  std::mutex mutex;
+  in_parallel(static_cast<int>(found.size()),
+              static_cast<int>(std::thread::hardware_concurrency()),
+              [&](int k) {
+                const auto seen = at_time_stamp(recording, corners, found[k]);
+                const auto pose = board_pose(seen, *recording.board, recording.camera);
+                const std::scoped_lock lock(mutex);
+                if (pose) poses.emplace(found[k], *pose);
+              });
+  return poses;
 }
 
 /// Returns the RMS above which a fit is rejected as wrong [px].
-double largest_rms_px(const BoardViews& views, std::span<const int> frames, const Camera& camera) {
+double largest_rms_px(const BoardPoses& poses, std::span<const int> frames, const Camera& camera) {
   std::vector<double> rms_px;
   for (const int frame : frames) {
-    const auto view = views.find(frame);
-    if (view != views.end() && view->second) rms_px.push_back(view->second->uncertainty.rms_px);
+    const auto pose = poses.find(frame);
+    if (pose != poses.end()) rms_px.push_back(pose->second.uncertainty.rms_px);
   }
   if (rms_px.empty()) return std::numeric_limits<double>::infinity();
   return std::max(kAlwaysGood * pixel_unit(camera), kMostTimesMedian * median(std::move(rms_px)));
@@ -78,7 +131,7 @@ Pose nearest(const Pose& pose, const std::vector<Pose>& symmetries, const Pose& 
   return *std::ranges::min_element(symmetries, {}, turned) * pose;
 }
 
-GroundTruth in_one_frame(const BoardViews& views,
+GroundTruth in_one_frame(const BoardPoses& poses,
                          std::span<const int> frames,
                          const Board& board,
                          double most_rms_px) {
@@ -89,9 +142,9 @@ GroundTruth in_one_frame(const BoardViews& views,
   const auto symmetries = board_symmetries(board);
   std::optional<Pose> last;
   for (std::size_t i = 0; i < frames.size(); ++i) {
-    const auto view = views.find(frames[i]);
-    if (view == views.end() || !view->second) continue;
-    const BoardPose& found = *view->second;
+    const auto pose = poses.find(frames[i]);
+    if (pose == poses.end()) continue;
+    const BoardPose& found = pose->second;
     if (found.uncertainty.rms_px > most_rms_px) continue;
     last = last ? nearest(found.pose, symmetries, *last) : found.pose;
     truth.poses[i] = last;
@@ -100,33 +153,9 @@ GroundTruth in_one_frame(const BoardViews& views,
   return truth;
 }
 
-/// Increase this whenever corners, poses or uncertainties in the same images change.
-constexpr int kAlgorithm = 4;
-constexpr std::string_view kMagic = "gpo board views\n";
-
-/// Frame, whether the board was found, R_wc, p_wc, uncertainty.
-using StoredView = std::array<double, 18>;
-
-StoredView row_of(int frame, const std::optional<BoardPose>& view) {
-  StoredView one{static_cast<double>(frame), view ? 1.0 : 0.0};
-  if (!view) return one;
-  Eigen::Map<Eigen::Matrix3d>(one.data() + 2) = view->pose.R_wc;
-  Eigen::Map<Eigen::Vector3d>(one.data() + 11) = view->pose.p_wc;
-  const auto& u = view->uncertainty;
-  Eigen::Map<Eigen::Vector4d>(one.data() + 14) << u.rms_px, u.position_sigma_m,
-      u.rotation_sigma_deg, u.normal_sigma_deg;
-  return one;
-}
-
-std::optional<BoardPose> restored(const StoredView& one) {
-  if (one[1] == 0) return std::nullopt;
-  return BoardPose{
-      {Eigen::Map<const Eigen::Matrix3d>(&one[2]), Eigen::Map<const Eigen::Vector3d>(&one[11])},
-      {.rms_px = one[14],
-       .position_sigma_m = one[15],
-       .rotation_sigma_deg = one[16],
-       .normal_sigma_deg = one[17]}};
-}
+/// Increase this whenever corners in the same images change.
+constexpr int kAlgorithm = 5;
+constexpr std::string_view kMagic = "gpo board corners\n";
 
 /// Contains the file's name, so that a renamed file is not accepted.
 std::string head_of(const fs::path& file) {
@@ -139,9 +168,9 @@ GroundTruth board_truth(const Recording& recording,
                         const std::vector<int>& frames,
                         const std::stop_token& stop,
                         const BoardProgress& progress) {
-  const BoardViews views = views_of(recording, frames, stop, progress);
+  const BoardPoses poses = poses_of(recording, frames, stop, progress);
   return in_one_frame(
-      views, frames, *recording.board, largest_rms_px(views, frames, recording.camera));
+      poses, frames, *recording.board, largest_rms_px(poses, frames, recording.camera));
 }
 
 GroundTruth board_truth(const Recording& recording,
@@ -152,11 +181,11 @@ GroundTruth board_truth(const Recording& recording,
   const int left = recording.frame_count() - start;
   std::vector<int> considered(std::max(frames, std::min(kMedianFrames, left)));
   std::iota(considered.begin(), considered.end(), start);
-  const BoardViews views = views_of(recording, considered, stop, progress);
+  const BoardPoses poses = poses_of(recording, considered, stop, progress);
   const std::span<const int> all = considered;
   const double most_rms_px =
-      largest_rms_px(views, all.first(std::min(kMedianFrames, left)), recording.camera);
-  return in_one_frame(views, all.first(frames), *recording.board, most_rms_px);
+      largest_rms_px(poses, all.first(std::min(kMedianFrames, left)), recording.camera);
+  return in_one_frame(poses, all.first(frames), *recording.board, most_rms_px);
 }
 
 std::optional<PoseUncertainty> median_uncertainty(
@@ -186,19 +215,7 @@ std::string uncertainty_text(const PoseUncertainty& uncertainty) {
 std::optional<fs::path> board_cache_file(const Recording& recording) {
   if (recording.cache_folder.empty() || recording.image_files.empty() || !recording.board)
     return std::nullopt;
-  const Camera& camera = recording.camera;
-  std::string key = fmt::format("{} {}\n{}x{} {} {} {} {} {} {}\n{}\n",
-                                kAlgorithm,
-                                CV_VERSION,
-                                camera.width,
-                                camera.height,
-                                camera.fx,
-                                camera.fy,
-                                camera.cx,
-                                camera.cy,
-                                static_cast<int>(camera.distortion),
-                                fmt::join(camera.coefficients, " "),
-                                text_of(*recording.board));
+  std::string key = fmt::format("{} {}\n{}\n", kAlgorithm, CV_VERSION, text_of(*recording.board));
   try {
     const RecordingContent content = content_of(recording);
     key += content.at("pictures") + content.at("time stamps");  // frames may be left out
@@ -208,7 +225,7 @@ std::optional<fs::path> board_cache_file(const Recording& recording) {
   return recording.cache_folder / "boards" / fmt::format("{:016x}", fnv1a(key));
 }
 
-BoardViews load_board_views(const fs::path& file) {
+BoardCorners load_board_corners(const fs::path& file) {
   std::string bytes;
   try {
     bytes = read_file(file);
@@ -220,18 +237,28 @@ BoardViews load_board_views(const fs::path& file) {
   if (!bytes.starts_with(head) || bytes.size() < head.size() + kSum) return {};
   const std::string_view body = std::string_view(bytes).substr(0, bytes.size() - kSum);
   if (bytes.substr(body.size()) != stored(fnv1a(body))) return {};
-  BoardViews views;
+  BoardCorners all;
   ByteCursor cursor(body.substr(head.size()));
-  for (auto one = cursor.number<StoredView>(); cursor.ok(); one = cursor.number<StoredView>())
-    views[static_cast<int>(one[0])] = restored(one);
-  return views;
+  for (auto frame = cursor.number<std::int32_t>(); cursor.ok();
+       frame = cursor.number<std::int32_t>()) {
+    auto& corners = all[frame];
+    const auto count = cursor.number<std::int32_t>();
+    for (std::int32_t k = 0; k < count && cursor.ok(); ++k) {
+      const auto x = cursor.number<double>();
+      corners.emplace_back(x, cursor.number<double>());
+    }
+  }
+  return all;
 }
 
-void save_board_views(const fs::path& file, const BoardViews& views) {
-  BoardViews all = load_board_views(file);
-  all.insert(views.begin(), views.end());
+void save_board_corners(const fs::path& file, const BoardCorners& corners) {
+  BoardCorners all = load_board_corners(file);
+  all.insert(corners.begin(), corners.end());
   std::string bytes = head_of(file);
-  for (const auto& [frame, view] : all) bytes += stored(row_of(frame, view));
+  for (const auto& [frame, in_frame] : all) {
+    bytes += stored(std::int32_t{frame}) + stored(static_cast<std::int32_t>(in_frame.size()));
+    for (const Eigen::Vector2d& corner : in_frame) bytes += stored(corner.x()) + stored(corner.y());
+  }
   bytes += stored(fnv1a(bytes));
   std::error_code error;
   fs::create_directories(file.parent_path(), error);
