@@ -88,6 +88,16 @@ std::optional<Readout> likely_readout(const Views& views,
   return best;
 }
 
+/// Views in blocks of time.
+struct Blocks {
+  explicit Blocks(const Views& views)
+      : views(static_cast<int>(views.size())), count(std::min(kBlocks, this->views)) {}
+  int of_view(int view) const { return view * count / views; }
+
+  int views;
+  int count;
+};
+
 /// Solutions without one of the blocks of time each.
 struct Jackknife {
   Eigen::MatrixXd covariance;  ///< that of the parameters, 0 x 0 if a solution fails
@@ -98,15 +108,14 @@ Jackknife jackknife(const Views& views,
                     const Board& board,
                     const LensStart& start,
                     bool with_readout) {
-  const int count = static_cast<int>(views.size());
-  const int blocks = std::min(kBlocks, count);
+  const Blocks blocks(views);
   const auto unknowns = std::ssize(parameters(start.camera));
-  Eigen::MatrixXd values(unknowns + 1, blocks);
-  std::vector<char> failed(blocks, 0);
-  in_parallel(blocks, static_cast<int>(std::thread::hardware_concurrency()), [&](int block) {
+  Eigen::MatrixXd values(unknowns + 1, blocks.count);
+  std::vector<char> failed(blocks.count, 0);
+  in_parallel(blocks.count, static_cast<int>(std::thread::hardware_concurrency()), [&](int block) {
     Views others;
-    for (int i = 0; i < count; ++i)
-      if (i * blocks / count != block) others.push_back(views[i]);
+    for (int i = 0; i < blocks.views; ++i)
+      if (blocks.of_view(i) != block) others.push_back(views[i]);
     LensStart own = start;
     if (with_readout)
       if (const auto readout = likely_readout(others, board, start, kFromNearby))
@@ -119,7 +128,7 @@ Jackknife jackknife(const Views& views,
   });
   if (std::ranges::count(failed, 1) > 0) return {};
   values.colwise() -= values.rowwise().mean().eval();
-  const Eigen::MatrixXd all = values * values.transpose() * (blocks - 1) / blocks;
+  const Eigen::MatrixXd all = values * values.transpose() * (blocks.count - 1) / blocks.count;
   return {all.topLeftCorner(unknowns, unknowns), std::sqrt(all(unknowns, unknowns))};
 }
 
@@ -207,24 +216,23 @@ LensEstimate estimate(const Views& views,
 /// notice errors that many views share.
 double excess_of_halves(const LensEstimate& estimate, const Board& board, const LensStart& start) {
   constexpr int kSplits = 4, kLeastSplits = 2;
-  const int count = static_cast<int>(estimate.views.size());
-  const int blocks = std::min(kBlocks, count);
+  const Blocks blocks(estimate.views);
   std::vector<std::optional<LensFit>> fits(2 * kSplits);
   in_parallel(2 * kSplits, static_cast<int>(std::thread::hardware_concurrency()), [&](int fit) {
-    std::vector<int> order(blocks);
+    std::vector<int> order(blocks.count);
     std::iota(order.begin(), order.end(), 0);
     std::mt19937_64 random(static_cast<std::uint64_t>(fit / 2 + 1));
-    for (int k = blocks - 1; k > 0; --k)  // std::shuffle differs between libraries
+    for (int k = blocks.count - 1; k > 0; --k)  // std::shuffle differs between libraries
       std::swap(order[k], order[random() % static_cast<std::uint64_t>(k + 1)]);
     Views half;
-    for (int i = 0; i < count; ++i)
-      if (order[i * blocks / count] % 2 == fit % 2) half.push_back(estimate.views[i]);
+    for (int i = 0; i < blocks.views; ++i)
+      if (order[blocks.of_view(i)] % 2 == fit % 2) half.push_back(estimate.views[i]);
     fits[fit] = fit_lens(half, board, start);
   });
   double squares = 0;
   int splits = 0;
-  for (int split = 0; split < kSplits; ++split) {
-    const auto &a = fits[2 * split], &b = fits[2 * split + 1];
+  for (std::size_t first = 0; first < fits.size(); first += 2) {
+    const auto &a = fits[first], &b = fits[first + 1];
     if (!a || !b || a->sigmas.empty() || b->sigmas.empty()) continue;
     const auto pa = parameters(a->camera), pb = parameters(b->camera);
     double sum = 0;

@@ -63,9 +63,9 @@ std::vector<Eigen::Vector2d> corner_velocities(const BoardCorners& corners,
                                                std::span<const std::int64_t> timestamps_ns) {
   const std::vector<int> others = neighbors(corners, frame);
   if (others.empty()) return {};
-  std::vector<double> times_s;
-  for (const int other : others)
-    times_s.push_back(1e-9 * static_cast<double>(timestamps_ns[other] - timestamps_ns[frame]));
+  std::vector<double> times_s(others.size());
+  for (std::size_t k = 0; k < others.size(); ++k)
+    times_s[k] = 1e-9 * static_cast<double>(timestamps_ns[others[k]] - timestamps_ns[frame]);
   const std::vector<double> weights = slope_weights(times_s);
   const Corners& here = corners.at(frame);
   Corners velocities(here.size(), Eigen::Vector2d::Zero());
