@@ -111,7 +111,7 @@ std::vector<fs::path> make_recordings(const std::vector<fs::path>& recipes) {
 }
 
 /// Version of the self-calibration. Raise it whenever the same images give another camera.
-constexpr int kAlgorithm = 4;
+constexpr int kAlgorithm = 5;
 
 /// Returns the file of the camera of a live source.
 fs::path cache_file(const std::string& device, cv::Size size) {
