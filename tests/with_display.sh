@@ -5,12 +5,13 @@
 # Runs a command with its own display and exits with the exit code of the command:
 #   with_display.sh WIDTHxHEIGHT COMMAND...
 # Xvfb chooses the display number itself, because two `xvfb-run -a` started together may choose the same one.
+# With -noreset it does not refuse a program that connects just after the last other client has left.
 set -u
 size=$1
 shift
 folder=$(mktemp -d)
 mkfifo "$folder/number"
-Xvfb -displayfd 3 -screen 0 "${size}x24" -nolisten tcp 3> "$folder/number" > "$folder/log" 2>&1 &
+Xvfb -displayfd 3 -screen 0 "${size}x24" -nolisten tcp -noreset 3> "$folder/number" > "$folder/log" 2>&1 &
 server=$!
 trap 'kill "$server" 2> /dev/null; wait "$server"; rm -rf "$folder"' EXIT
 if ! read -r number < "$folder/number"; then
