@@ -285,10 +285,25 @@ std::vector<TruthJump> truth_jumps(const Inspection& inspection) {
   return jumps;
 }
 
+/// Poses from a board are wrong if its corners were read later than the time stamp.
+std::string board_note(const Inspection& inspection) {
+  const bool from_board = inspection.truth && !inspection.truth->uncertainties.empty();
+  const auto& result = inspection.initialization;
+  if (!from_board || inspection.recording->camera.readout || !result) return "";
+  const auto& uncertainty = result->uncertainty;
+  if (!result->row_delay_s && !(uncertainty && uncertainty->neglected_row_delay_s)) return "";
+  return fmt::format(
+      "the tracks show a rolling shutter, but the ground truth from the {} takes all rows as read "
+      "at "
+      "once, without its readout time; calibrate writes it",
+      inspection.truth->source);
+}
+
 std::vector<std::string> notes_of(const Inspection& inspection) {
   const Window& window = *inspection.window;
   auto notes = notes_of(truth_jumps(inspection), inspection.recording->timestamps_ns.front());
-  for (const auto& note : {inspection.gyroscope_note, inspection.frames_note})
+  for (const auto& note :
+       {inspection.gyroscope_note, inspection.frames_note, board_note(inspection)})
     if (!note.empty()) notes.push_back(note);
   if (const auto missing = missing_plane(window, inspection.settings.options); !missing.empty())
     notes.push_back(fmt::format("{}; plane {} leads", missing, window.leader + 1));

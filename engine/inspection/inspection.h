@@ -215,7 +215,7 @@ std::string inliers_note(const Inspection& inspection);
 std::vector<TruthJump> truth_jumps(const Inspection& inspection);
 
 /// Returns one line for each remark on a result: a requested plane that does not exist, a jump of
-/// the ground truth.
+/// the ground truth, a ground truth from a board that ignores a rolling shutter.
 std::vector<std::string> notes_of(const Inspection& inspection);
 
 /// Result for one of many settings.

@@ -121,5 +121,22 @@ TEST(Notes, NameARequestedPlaneThatDoesNotExist) {
               ElementsAre(testing::StartsWith("plane 9 does not exist: the window has ")));
 }
 
+TEST(Notes, SayThatTheTruthOfABoardIgnoresARollingShutter) {
+  const auto recording = std::make_shared<Recording>(*desk());
+  Inspection inspection = *Inspector(recording).inspect({});
+  WindowTruth truth = *inspection.truth;
+  truth.uncertainties.resize(truth.cameras.size());
+  Initialization rolling = *inspection.initialization;
+  rolling.row_delay_s = 5e-5;
+  inspection.truth = std::make_shared<const WindowTruth>(truth);
+  EXPECT_THAT(notes_of(inspection), testing::IsEmpty());
+  inspection.initialization = std::make_shared<const Initialization>(rolling);
+  EXPECT_THAT(
+      notes_of(inspection),
+      ElementsAre(testing::StartsWith("the tracks show a rolling shutter, but the ground")));
+  recording->camera.readout = Readout{0.02, 1e-3};
+  EXPECT_THAT(notes_of(inspection), testing::IsEmpty());
+}
+
 }  // namespace
 }  // namespace gpo::test
