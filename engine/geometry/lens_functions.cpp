@@ -1,8 +1,7 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/geometry/lens_models.h"
-
 #include "engine/geometry/camera.h"
+#include "engine/geometry/lens_models.h"
 
 #include <algorithm>
 #include <array>
