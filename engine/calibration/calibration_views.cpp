@@ -21,7 +21,7 @@ namespace {
 constexpr int kLeastCorners = 8;
 constexpr int kCornersOfTag = 4;
 constexpr double kMostBlurred = 2;  // times the median width of edges
-constexpr int kRow = 5;             // images in a row that determine velocities
+constexpr int kSuccessive = 5;      // images that determine velocities
 
 using Feature = Eigen::Matrix<double, 6, 1>;
 
@@ -116,13 +116,14 @@ std::optional<Feature> feature_of(const CalibrationView& view,
   return feature;
 }
 
-std::vector<int> frames_to_search(int count, int most, bool in_rows) {
-  const int length = in_rows && count > most ? std::min(kRow, most) : 1;
+/// Returns at most `most` frames, evenly spread, some of them successive if `with_velocities`.
+std::vector<int> frames_to_search(int count, int most, bool with_velocities) {
+  const int length = with_velocities && count > most ? std::min(kSuccessive, most) : 1;
   const int places = std::min(count, most) / length;
   std::vector<int> frames;
   for (int place = 0; place < places; ++place)
     for (int k = 0; k < length; ++k)
-      frames.push_back(static_cast<int>(std::int64_t{place} * (count - length + 1) / places) + k);
+      frames.push_back(static_cast<int>(std::int64_t{place} * count / places) + k);
   return frames;
 }
 

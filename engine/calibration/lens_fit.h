@@ -19,7 +19,7 @@ struct CalibrationView {
   int frame = 0;
   std::vector<Eigen::Vector2d> corners;  ///< [raw px], as `find_board` returns them
   double edge_px = 0;                    ///< width of the edges between squares, at least 1
-  /// Of the corners [raw px/s], by the images before and after; empty if unknown.
+  /// Velocities of the corners [raw px/s], by the images before and after; empty if unknown.
   std::vector<Eigen::Vector2d> velocities_px_s = {};
 };
 

@@ -294,8 +294,7 @@ std::string board_note(const Inspection& inspection) {
   if (!result->row_delay_s && !(uncertainty && uncertainty->neglected_row_delay_s)) return "";
   return fmt::format(
       "the tracks show a rolling shutter, but the ground truth from the {} takes all rows as read "
-      "at "
-      "once, without its readout time; calibrate writes it",
+      "at once, as the readout time is unknown; `calibrate` estimates it",
       inspection.truth->source);
 }
 
