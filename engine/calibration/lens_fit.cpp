@@ -28,13 +28,14 @@ Correspondences correspondences(const std::vector<CalibrationView>& views,
   const auto all = board_points(board);
   Correspondences result;
   for (const CalibrationView& view : views) {
+    const bool moved = start.readout_s != 0 && !view.velocities_px_s.empty();
+    const auto corners =
+        moved ? at_time_stamp(view.corners, view.velocities_px_s, start.camera, start.readout_s)
+              : view.corners;
     auto& points = result.points.emplace_back();
     auto& pixels = result.pixels.emplace_back();
     for (std::size_t i = 0; i < all.size(); ++i) {
-      Eigen::Vector2d at = view.corners[i];
-      if (start.readout_s != 0 && !view.velocities_px_s.empty())
-        at -= start.readout_s * read_later(start.camera, at) * view.velocities_px_s[i];
-      const Eigen::Vector2f px = at.cast<float>();
+      const Eigen::Vector2f px = corners[i].cast<float>();
       if (!px.allFinite()) continue;
       points.emplace_back(static_cast<float>(all[i].x()), static_cast<float>(all[i].y()), 0.0F);
       pixels.emplace_back(px.x(), px.y());

@@ -182,9 +182,9 @@ int readout_lines(const Camera& camera) {
   return readout_direction(camera).x() != 0 ? camera.width : camera.height;
 }
 
-double read_later(const Camera& camera, const Eigen::Vector2d& raw_px) {
+double row_from_middle(const Camera& camera, const Eigen::Vector2d& raw_px) {
   const Eigen::Vector2d middle = 0.5 * Eigen::Vector2d(camera.width - 1, camera.height - 1);
-  return readout_direction(camera).dot(raw_px - middle) / (readout_lines(camera) - 1);
+  return readout_direction(camera).dot(raw_px - middle);
 }
 
 Eigen::Matrix3d intrinsic_matrix(const Camera& camera) {

@@ -87,8 +87,8 @@ Readout readout_of(double seconds);
 Eigen::Vector2d readout_direction(const Camera& camera);
 /// Returns the number of rows, or columns, that are read one after the other.
 int readout_lines(const Camera& camera);
-/// Time from the middle row until a raw pixel is read [readouts].
-double read_later(const Camera& camera, const Eigen::Vector2d& raw_px);
+/// Returns the distance of a raw pixel from the middle row (or column) along the readout [rows].
+double row_from_middle(const Camera& camera, const Eigen::Vector2d& raw_px);
 
 /// Returns true for a symmetric, positive semidefinite matrix, up to the rounding in files.
 bool is_covariance(const Eigen::MatrixXd& matrix);

@@ -108,9 +108,10 @@ void add_gravity(const Window& window,
 void set_readout(const Camera& camera, const Tracks& tracks, Window& window) {
   window.readout_direction = readout_direction(camera);
   window.image_rows = readout_lines(camera);
-  const Eigen::Vector2d center_px(0.5 * (camera.width - 1), 0.5 * (camera.height - 1));
-  for (const Eigen::Matrix2Xd& raw_px : tracks.raw_px)
-    window.rows.emplace_back((raw_px.colwise() - center_px).transpose() * window.readout_direction);
+  for (const Eigen::Matrix2Xd& raw_px : tracks.raw_px) {
+    Eigen::VectorXd& rows = window.rows.emplace_back(raw_px.cols());
+    for (Eigen::Index j = 0; j < rows.size(); ++j) rows[j] = row_from_middle(camera, raw_px.col(j));
+  }
   if (camera.readout && readout_lines(camera) > 1) {
     const double rows = readout_lines(camera) - 1;
     window.row_delay = {camera.readout->seconds / rows, camera.readout->sigma_s / rows};

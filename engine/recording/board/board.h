@@ -92,6 +92,13 @@ std::vector<Eigen::Vector2d> corner_velocities(const BoardCorners& corners,
                                                int frame,
                                                std::span<const std::int64_t> timestamps_ns);
 
+/// Moves corners [raw px] that a rolling shutter read later or earlier to the time stamp, by their
+/// velocities [raw px/s].
+std::vector<Eigen::Vector2d> at_time_stamp(std::vector<Eigen::Vector2d> corners,
+                                           const std::vector<Eigen::Vector2d>& velocities_px_s,
+                                           const Camera& camera,
+                                           double readout_s);
+
 /// Called after each processed frame, by one thread at a time.
 using BoardProgress = std::function<void(int done, int of)>;
 

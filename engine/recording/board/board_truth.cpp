@@ -78,17 +78,16 @@ std::vector<int> with_neighbors(const Recording& recording, const std::vector<in
   return {all.begin(), all.end()};
 }
 
-/// Returns the corners at the time stamp of the frame; empty if that is unknown.
-std::vector<Eigen::Vector2d> at_time_stamp(const Recording& recording,
-                                           const BoardCorners& corners,
-                                           int frame) {
-  std::vector<Eigen::Vector2d> moved = corners.at(frame);
-  if (moved.empty() || readout_s(recording) == 0) return moved;
+/// Returns the corners at the time stamp of the frame; empty if they or their velocities are
+/// unknown.
+std::vector<Eigen::Vector2d> corners_at(const Recording& recording,
+                                        const BoardCorners& corners,
+                                        int frame) {
+  const std::vector<Eigen::Vector2d>& seen = corners.at(frame);
+  if (seen.empty() || readout_s(recording) == 0) return seen;
   const auto velocities_px_s = corner_velocities(corners, frame, recording.timestamps_ns);
   if (velocities_px_s.empty()) return {};
-  for (std::size_t j = 0; j < moved.size(); ++j)
-    moved[j] -= readout_s(recording) * read_later(recording.camera, moved[j]) * velocities_px_s[j];
-  return moved;
+  return at_time_stamp(seen, velocities_px_s, recording.camera, readout_s(recording));
 }
 
 BoardPoses poses_of(const Recording& recording,
@@ -105,7 +104,7 @@ BoardPoses poses_of(const Recording& recording,
   in_parallel(static_cast<int>(found.size()),
               static_cast<int>(std::thread::hardware_concurrency()),
               [&](int k) {
-                const auto seen = at_time_stamp(recording, corners, found[k]);
+                const auto seen = corners_at(recording, corners, found[k]);
                 const auto pose = board_pose(seen, *recording.board, recording.camera);
                 const std::scoped_lock lock(mutex);
                 if (pose) poses.emplace(found[k], *pose);

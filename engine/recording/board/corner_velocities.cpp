@@ -75,4 +75,14 @@ std::vector<Eigen::Vector2d> corner_velocities(const BoardCorners& corners,
   return velocities;
 }
 
+std::vector<Eigen::Vector2d> at_time_stamp(std::vector<Eigen::Vector2d> corners,
+                                           const std::vector<Eigen::Vector2d>& velocities_px_s,
+                                           const Camera& camera,
+                                           double readout_s) {
+  const double row_delay_s = readout_s / (readout_lines(camera) - 1);
+  for (std::size_t j = 0; j < corners.size(); ++j)
+    corners[j] -= row_delay_s * row_from_middle(camera, corners[j]) * velocities_px_s[j];
+  return corners;
+}
+
 }  // namespace gpo

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/calibration/calibrate.h"
 #include "engine/calibration/calibration_report.h"
+#include "tests/engine/calibration/phone_and_board.h"
 #include "tests/engine/recording/board/rendered_board.h"
 
 #include <numbers>
@@ -14,12 +15,6 @@ namespace gpo::test {
 namespace {
 
 using Eigen::Vector2d, Eigen::Vector3d, testing::HasSubstr;
-
-const Board kFilmedBoard{9, 6, 0.025};
-
-Camera rolling_camera() {
-  return {640, 480, 600, 604, 317, 243, Distortion::radial_tangential, {0.12, -0.25, 1e-3, -6e-4}};
-}
 
 /// A hand that films the board from all sides; harmonics of random frequencies and phases.
 class FilmingHand {
@@ -45,7 +40,7 @@ class FilmingHand {
 };
 
 struct Filmed {
-  Camera camera = rolling_camera();
+  Camera camera = phone();
   double readout_s = 0;
   double noise_px = 0.1;
 };
@@ -56,19 +51,18 @@ BoardSearch film(const Filmed& options, std::uint64_t seed) {
   std::normal_distribution<double> noise(0, options.noise_px);
   const FilmingHand hand(random);
   const Camera& camera = options.camera;
-  const Eigen::Vector2d middle(0.5 * (camera.width - 1), 0.5 * (camera.height - 1));
   BoardSearch search;
   search.size = {camera.width, camera.height};
   for (int frame = 0; frame < 40; ++frame) {
     CalibrationView view{frame, {}, 1.5};
-    for (const Vector3d& corner : board_points(kFilmedBoard)) {
+    for (const Vector3d& corner : board_points(kBoard)) {
       const auto at = [&](double time_s) {
         return project(camera, to_camera(hand.pose_at(time_s), corner));
       };
       const double time_s = 0.3 * frame;
       double later_s = 0;
       for (int pass = 0; pass < 4; ++pass)
-        later_s = options.readout_s * readout_direction(camera).dot(at(time_s + later_s) - middle) /
+        later_s = options.readout_s * row_from_middle(camera, at(time_s + later_s)) /
                   (readout_lines(camera) - 1);
       view.corners.push_back(at(time_s + later_s) + Vector2d(noise(random), noise(random)));
       view.velocities_px_s.push_back((at(time_s + 1e-4) - at(time_s - 1e-4)) / 2e-4);
@@ -92,14 +86,14 @@ TEST(BoardReadout, IsEstimatedTogetherWithTheCamera) {
     double squares = 0, readout_squares = 0;
     constexpr int kSeeds = 3;
     for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {
-      const auto found = calibrate_camera(film({.readout_s = readout_s}, seed), kFilmedBoard);
+      const auto found = calibrate_camera(film({.readout_s = readout_s}, seed), kBoard);
       ASSERT_TRUE(found.ok) << found.reason;
       ASSERT_TRUE(found.camera.readout) << readout_s << " " << seed;
       const Readout& readout = *found.camera.readout;
       EXPECT_NEAR(readout.seconds, readout_s, 6e-4);
       EXPECT_THAT(to_text(found), HasSubstr("ms, first row to last"));
       readout_squares += std::pow((readout.seconds - readout_s) / readout.sigma_s, 2) / kSeeds;
-      squares += mean_normalized_square(found, rolling_camera()) / kSeeds;
+      squares += mean_normalized_square(found, phone()) / kSeeds;
     }
     EXPECT_LT(squares, 2) << readout_s;
     EXPECT_LT(readout_squares, 4) << readout_s;
@@ -109,9 +103,9 @@ TEST(BoardReadout, IsEstimatedTogetherWithTheCamera) {
 TEST(BoardReadout, WithoutVelocitiesShiftsTheCamera) {
   BoardSearch search = film({.readout_s = 0.03}, 1);
   for (CalibrationView& view : search.views) view.velocities_px_s.clear();
-  const auto found = calibrate_camera(search, kFilmedBoard);
+  const auto found = calibrate_camera(search, kBoard);
   EXPECT_FALSE(found.camera.readout);
-  EXPECT_TRUE(!found.ok || mean_normalized_square(found, rolling_camera()) > 2);
+  EXPECT_TRUE(!found.ok || mean_normalized_square(found, phone()) > 2);
 }
 
 TEST(BoardReadout, FollowsItsDirectionAndAGivenOne) {
@@ -119,12 +113,12 @@ TEST(BoardReadout, FollowsItsDirectionAndAGivenOne) {
   sideways.camera.readout_direction = ReadoutDirection::left;
   const BoardSearch search = film(sideways, 1);
   const auto found =
-      calibrate_camera(search, kFilmedBoard, {.readout_direction = ReadoutDirection::left});
+      calibrate_camera(search, kBoard, {.readout_direction = ReadoutDirection::left});
   ASSERT_TRUE(found.ok && found.camera.readout) << found.reason;
   EXPECT_NEAR(found.camera.readout->seconds, 0.02, 6e-4);
   const Readout given{0.02, 1e-3};
   const auto known = calibrate_camera(
-      search, kFilmedBoard, {.readout = given, .readout_direction = ReadoutDirection::left});
+      search, kBoard, {.readout = given, .readout_direction = ReadoutDirection::left});
   ASSERT_TRUE(known.ok) << known.reason;
   EXPECT_EQ(known.camera.readout, given);
   EXPECT_EQ(known.camera.readout_direction, ReadoutDirection::left);
@@ -134,11 +128,11 @@ TEST(BoardReadout, FollowsItsDirectionAndAGivenOne) {
 TEST(BoardReadout, IsLeftOutForAGlobalShutter) {
   for (const std::uint64_t seed : {1, 2}) {
     BoardSearch search = film({}, seed);
-    const auto found = calibrate_camera(search, kFilmedBoard);
+    const auto found = calibrate_camera(search, kBoard);
     ASSERT_TRUE(found.ok) << found.reason;
     EXPECT_FALSE(found.camera.readout) << found.camera.readout->seconds;
     for (CalibrationView& view : search.views) view.velocities_px_s.clear();
-    EXPECT_EQ(parameters(found.camera), parameters(calibrate_camera(search, kFilmedBoard).camera));
+    EXPECT_EQ(parameters(found.camera), parameters(calibrate_camera(search, kBoard).camera));
   }
 }
 
@@ -146,8 +140,8 @@ TEST(BoardReadout, IsLeftOutForAGlobalShutter) {
 FrameCache images_of_board(const Camera& camera, int count, double (*tilt_deg)(int frame)) {
   return {count, [=](int frame) {
             cv::Mat bgr;
-            const Pose pose = looking_at(kFilmedBoard, 0.35, tilt_deg(frame), 5);
-            cv::cvtColor(render_board(kFilmedBoard, camera, pose), bgr, cv::COLOR_GRAY2BGR);
+            const Pose pose = looking_at(kBoard, 0.35, tilt_deg(frame), 5);
+            cv::cvtColor(render_board(kBoard, camera, pose), bgr, cv::COLOR_GRAY2BGR);
             return bgr;
           }};
 }
@@ -157,12 +151,12 @@ TEST(BoardReadout, VelocitiesComeFromNeighboringImages) {
   std::vector<std::int64_t> times_ns;
   for (int i = 0; i < 12; ++i) times_ns.push_back(1'000'000'000LL + 50'000'000LL * i);
   const FrameCache images = images_of_board(camera, 12, [](int frame) { return 2.0 * frame - 10; });
-  const auto search = find_calibration_views(images, kFilmedBoard, 12, {}, times_ns);
+  const auto search = find_calibration_views(images, kBoard, 12, {}, times_ns);
   ASSERT_EQ(search.views.size(), 12U);
   for (int i = 0; i < 12; ++i) {
     const double most_px_s = i == 0 || i == 11 ? 12 : 5;  // from one side
     const auto at = [&](double frame) {
-      return project_board(kFilmedBoard, camera, looking_at(kFilmedBoard, 0.35, 2 * frame - 10, 5));
+      return project_board(kBoard, camera, looking_at(kBoard, 0.35, 2 * frame - 10, 5));
     };
     const auto before = at(i - 0.1), after = at(i + 0.1);
     const CalibrationView& view = search.views[i];
@@ -170,17 +164,17 @@ TEST(BoardReadout, VelocitiesComeFromNeighboringImages) {
     for (std::size_t j = 0; j < view.corners.size(); ++j)
       EXPECT_LT((view.velocities_px_s[j] - (after[j] - before[j]) / 0.01).norm(), most_px_s) << i;
   }
-  const auto rows = find_calibration_views(images, kFilmedBoard, 10, {}, times_ns);
+  const auto rows = find_calibration_views(images, kBoard, 10, {}, times_ns);
   std::vector<int> frames;
   for (const CalibrationView& view : rows.views) frames.push_back(view.frame);
   EXPECT_THAT(frames, testing::ElementsAre(0, 1, 2, 3, 4, 6, 7, 8, 9, 10));
   const auto photos = find_calibration_views(
       images_of_board(camera, 3, [](int frame) { return frame == 1 ? 20.0 : -10.0; }),
-      kFilmedBoard,
+      kBoard,
       3,
       {},
       std::span(times_ns).first(3));
-  const auto untimed = find_calibration_views(images, kFilmedBoard, 12);
+  const auto untimed = find_calibration_views(images, kBoard, 12);
   for (const auto& view : untimed.views) EXPECT_TRUE(view.velocities_px_s.empty());
   EXPECT_EQ(photos.views.size(), 3U);
   for (const auto& view : photos.views) EXPECT_TRUE(view.velocities_px_s.empty());

@@ -4,6 +4,7 @@
 
 #include "engine/calibration/calibration_report.h"
 #include "engine/recording/companions/companion_files.h"
+#include "tests/engine/calibration/phone_and_board.h"
 #include "tests/engine/frontend/texture.h"
 #include "tests/engine/recording/board/rendered_board.h"
 #include "tests/engine/test_folder.h"
@@ -22,11 +23,6 @@ namespace {
 
 using Eigen::Vector2d, Eigen::Vector3d, testing::HasSubstr;
 
-const Board kBoard{9, 6, 0.025};
-
-Camera phone() {
-  return {640, 480, 600, 604, 317, 243, Distortion::radial_tangential, {0.12, -0.25, 1e-3, -6e-4}};
-}
 Camera wide() {
   return {640, 480, 280, 281, 322, 236, Distortion::equidistant, {0.02, -0.01, 0.004, -0.001}};
 }

@@ -247,7 +247,8 @@ BoardCorners rolling_corners(const Recording& recording, const auto& pose_at) {
     for (const Eigen::Vector3d& point : board_points(*recording.board)) {
       Eigen::Vector2d px = project(camera, to_camera(pose_at(time_s), point));
       for (int pass = 0; pass < 4; ++pass) {
-        const double later_s = camera.readout->seconds * read_later(camera, px);
+        const double later_s =
+            camera.readout->seconds * row_from_middle(camera, px) / (readout_lines(camera) - 1);
         px = project(camera, to_camera(pose_at(time_s + later_s), point));
       }
       all[frame].push_back(px);
