@@ -285,13 +285,13 @@ std::vector<TruthJump> truth_jumps(const Inspection& inspection) {
   return jumps;
 }
 
-/// Poses from a board are wrong if its corners were read later than the time stamp.
-std::string board_note(const Inspection& inspection) {
+std::string board_truth_note(const Inspection& inspection) {
   const bool from_board = inspection.truth && !inspection.truth->uncertainties.empty();
   const auto& result = inspection.initialization;
-  if (!from_board || inspection.recording->camera.readout || !result) return "";
+  if (!from_board || !result) return "";
   const auto& uncertainty = result->uncertainty;
-  if (!result->row_delay_s && !(uncertainty && uncertainty->neglected_row_delay_s)) return "";
+  const bool rolling = result->row_delay_s || (uncertainty && uncertainty->neglected_row_delay_s);
+  if (!rolling || inspection.recording->camera.readout) return "";
   return fmt::format(
       "the tracks show a rolling shutter, but the ground truth from the {} takes all rows as read "
       "at once, as the readout time is unknown; `calibrate` estimates it",
@@ -302,7 +302,7 @@ std::vector<std::string> notes_of(const Inspection& inspection) {
   const Window& window = *inspection.window;
   auto notes = notes_of(truth_jumps(inspection), inspection.recording->timestamps_ns.front());
   for (const auto& note :
-       {inspection.gyroscope_note, inspection.frames_note, board_note(inspection)})
+       {inspection.gyroscope_note, inspection.frames_note, board_truth_note(inspection)})
     if (!note.empty()) notes.push_back(note);
   if (const auto missing = missing_plane(window, inspection.settings.options); !missing.empty())
     notes.push_back(fmt::format("{}; plane {} leads", missing, window.leader + 1));

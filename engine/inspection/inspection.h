@@ -214,6 +214,10 @@ std::string inliers_note(const Inspection& inspection);
 /// Returns the jumps of the ground truth within the window; empty without truth.
 std::vector<TruthJump> truth_jumps(const Inspection& inspection);
 
+/// Returns that the poses of a ground truth from a board are wrong because its corners were not
+/// read at the time stamp, by a rolling shutter of unknown readout time; empty if none is known.
+std::string board_truth_note(const Inspection& inspection);
+
 /// Returns one line for each remark on a result: a requested plane that does not exist, a jump of
 /// the ground truth, a ground truth from a board that ignores a rolling shutter.
 std::vector<std::string> notes_of(const Inspection& inspection);

@@ -43,12 +43,14 @@ std::optional<ResultRow> truth_row(const Inspection& inspection) {
   if (!inspection.truth) return std::nullopt;
   const auto uncertainty = median_uncertainty(inspection.truth->uncertainties);
   if (!uncertainty) return std::nullopt;
+  const std::string note = board_truth_note(inspection);
+  std::string tooltip = "Uncertainty of the ground truth from the board (1 sigma): " +
+                        uncertainty_text(*uncertainty) + ". Calibration errors are not included";
+  if (!note.empty()) tooltip += ", nor those of the rolling shutter: " + note;
   return ResultRow{.label = "Truth",
                    .value = sigma_text(uncertainty->normal_sigma_deg),
-                   .note = "normal",
-                   .tooltip = "Uncertainty of the ground truth from the board (1 sigma): " +
-                              uncertainty_text(*uncertainty) +
-                              ". Calibration errors are not included"};
+                   .note = note.empty() ? "normal" : "readout unknown",
+                   .tooltip = std::move(tooltip)};
 }
 
 ResultGroup metrics_group(const Inspection& inspection) {

@@ -124,8 +124,26 @@ TEST(Results, ShowTheUncertaintyOfTruthFromTheBoard) {
   inspection.truth = truth;
   const ResultRow row = rows_of(&inspection).at("Truth");
   EXPECT_EQ(row.value, "\u00b10.050\u00b0");
+  EXPECT_EQ(row.note, "normal");
   EXPECT_THAT(row.tooltip,
               AllOf(HasSubstr("0.4 mm"), HasSubstr("0.06 deg"), HasSubstr("0.05 deg")));
+}
+
+TEST(Results, SayThatTruthFromTheBoardLacksTheReadoutTime) {
+  Inspection inspection = inspected();
+  auto truth = std::make_shared<WindowTruth>();
+  truth->source = "chessboard";
+  truth->uncertainties = {PoseUncertainty{0.2, 4e-4, 0.06, 0.05}};
+  inspection.truth = truth;
+  auto recording = std::make_shared<Recording>();
+  inspection.recording = recording;
+  auto rolling = std::make_shared<Initialization>(*inspection.initialization);
+  rolling->row_delay_s = 2e-5;
+  inspection.initialization = rolling;
+  EXPECT_EQ(rows_of(&inspection).at("Truth").note, "readout unknown");
+  EXPECT_THAT(rows_of(&inspection).at("Truth").tooltip, HasSubstr("`calibrate` estimates it"));
+  recording->camera.readout = Readout{0.01, 1e-3};
+  EXPECT_EQ(rows_of(&inspection).at("Truth").note, "normal");
 }
 
 TEST(Results, HaveUnitsAndSensibleDigits) {
