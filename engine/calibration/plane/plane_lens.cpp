@@ -235,9 +235,10 @@ void take_lens(const PlaneData& problem,
 constexpr int kMostFrames = 400;
 constexpr std::size_t kMostPlanes = 4;  // the longest chains
 constexpr int kMostChainViews = 60;     // for one chain; half of it for more
-// Noise of a rotation and scale error of the rates, as phones have them.
+// Noise of a rotation, and errors of scale and axes (0.6 deg) as shares of a rotation, as phones
+// have them.
 constexpr double kGyroNoise_rad = 3e-4;
-constexpr double kGyroScale = 3e-3;
+constexpr double kGyroShare = 1e-2;
 
 GyroRotations gyro_rotations_between(const Gyroscope& gyroscope,
                                      std::span<const std::int64_t> frame_times_ns,
@@ -253,7 +254,7 @@ GyroRotations gyro_rotations_between(const Gyroscope& gyroscope,
       if (!why_not_covered(gyroscope, times[0] + offset_ns, times[1] + offset_ns).empty()) continue;
       const Rotations rotation = sensitive_gyro_rotations(gyroscope, times);
       const double sigma_rad =
-          std::hypot(kGyroNoise_rad, kGyroScale * so3_log(rotation.R_wc[1]).norm());
+          std::hypot(kGyroNoise_rad, kGyroShare * so3_log(rotation.R_wc[1]).norm());
       gyro.rotations.push_back({from, to, rotation.R_wc[1], rotation.gyro->d_bias[1], sigma_rad});
     }
   }
