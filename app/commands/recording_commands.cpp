@@ -14,6 +14,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <numeric>
 
 #include <nlohmann/json.hpp>
 
@@ -71,7 +72,9 @@ std::shared_ptr<const Recording> open_or_print_topics(const InfoArguments& argum
 std::optional<GroundTruth> truth_of(const Recording& recording) {
   if (recording.truth || !recording.board || !recording.images) return recording.truth;
   ProgressBar bar("finding the board");
-  return board_truth(recording, 0, recording.frame_count(), current_stop(), std::ref(bar));
+  std::vector<int> frames(recording.frame_count());
+  std::iota(frames.begin(), frames.end(), 0);
+  return board_truth(recording, frames, current_stop(), std::ref(bar));
 }
 
 int print_info(const InfoArguments& arguments) {

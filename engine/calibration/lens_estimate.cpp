@@ -4,6 +4,7 @@
 
 #include "engine/base/parallel.h"
 #include "engine/geometry/statistics.h"
+#include "engine/recording/board/board.h"
 
 #include <algorithm>
 #include <cmath>
@@ -75,14 +76,12 @@ std::optional<Readout> likely_readout(const Views& views,
   Readout best{start.readout_s};
   double step_s = search.first_step_s;
   for (int round = 0; round < search.rounds; ++round, step_s /= 3) {
-    const double middle = mean_square(best.seconds);
-    const double less = mean_square(best.seconds - step_s);
-    const double more = mean_square(best.seconds + step_s);
-    const double bend = less - 2 * middle + more;
-    if (!(bend > 0) || !std::isfinite(bend)) return std::nullopt;
-    best.seconds += 0.5 * step_s * (less - more) / bend;
-    // The sum of squares is N (rms^2 + bend / 2 (s / step)^2), its unit variance N rms^2 / freedom.
-    best.sigma_s = step_s * std::sqrt(2 * middle / bend / freedom);
+    const Eigen::Array3d squares(mean_square(best.seconds - step_s),
+                                 mean_square(best.seconds),
+                                 mean_square(best.seconds + step_s));
+    const auto shift = least_readout(squares, step_s, freedom);
+    if (!shift) return std::nullopt;
+    best = {best.seconds + shift->seconds, shift->sigma_s};
     if (std::abs(best.seconds) > kMostReadout_s) return std::nullopt;
   }
   return best;

@@ -145,8 +145,10 @@ std::shared_ptr<const WindowTruth> window_truth(const Recording& recording,
     if (progress) progress("finding the board", done, of);
   };
   GroundTruth found = board_truth(recording, span.start, span.frames, stop, report);
-  return std::make_shared<const WindowTruth>(WindowTruth{
-      found.source, std::move(found.poses), kBoardPlane, std::move(found.uncertainties)});
+  WindowTruth truth{
+      found.source, std::move(found.poses), kBoardPlane, std::move(found.uncertainties)};
+  truth.estimated_readout = found.estimated_readout;
+  return std::make_shared<const WindowTruth>(std::move(truth));
 }
 
 std::shared_ptr<const WindowTruth> beginning(const std::shared_ptr<const WindowTruth>& whole,

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "engine/geometry/camera.h"
 #include "engine/geometry/plane.h"
 #include "engine/geometry/pose.h"
 
@@ -37,6 +38,7 @@ struct GroundTruth {
   bool upright = false;            ///< the world's z axis points away from gravity
   std::vector<TruthJump> jumps{};  ///< between the samples of the file, while there are frames
   int left_out = 0;                ///< rows of the file that are not finite or repeat a time
+  std::optional<Readout> estimated_readout{};  ///< set if the poses of a board depend on it
 };
 
 /// The truth of one window, in the truth's own world.
@@ -45,8 +47,9 @@ struct WindowTruth {
   std::vector<std::optional<Pose>> cameras;  ///< one per frame of the window [m]
   std::optional<Plane> plane;                ///< [m]
   std::vector<std::optional<PoseUncertainty>>
-      uncertainties{};   ///< one per camera; empty if unknown
-  bool upright = false;  ///< the world's z axis points away from gravity
+      uncertainties{};                         ///< one per camera; empty if unknown
+  bool upright = false;                        ///< the world's z axis points away from gravity
+  std::optional<Readout> estimated_readout{};  ///< see `GroundTruth`
 };
 
 }  // namespace gpo

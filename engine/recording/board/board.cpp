@@ -152,7 +152,6 @@ Corners find_chessboard(const cv::Mat& gray, const Board& board) {
 using Matrix6 = Eigen::Matrix<double, 6, 6>;
 using Vector6 = Eigen::Matrix<double, 6, 1>;
 
-constexpr double kMostRms = 2;  // [pixel_unit]
 constexpr std::size_t kLeastCorners = 6;
 constexpr std::size_t kLeastCornersOfTag = 4;
 
@@ -343,11 +342,12 @@ std::vector<Eigen::Vector3d> board_points(const Board& board) {
 
 std::optional<BoardPose> board_pose(const std::vector<Eigen::Vector2d>& corners_raw_px,
                                     const Board& board,
-                                    const Camera& camera) {
+                                    const Camera& camera,
+                                    double most_rms) {
   const Visible visible = visible_corners(corners_raw_px, board, camera);
   const std::size_t least = board.tags && board.tags->alone ? kLeastCornersOfTag : kLeastCorners;
   if (visible.points.size() < least || nearly_collinear(visible.points, board)) return std::nullopt;
-  const double most_rms_px = kMostRms * pixel_unit(camera);
+  const double most_rms_px = most_rms * pixel_unit(camera);
   std::optional<BoardPose> best;
   for (const Pose& guess : first_guesses(visible, camera)) {
     const BoardPose pose = with_uncertainty(visible, camera, refined(visible, camera, guess));

@@ -65,12 +65,13 @@ struct BoardPose {
 /// Estimates the camera pose by PnP (IPPE, then least squares of the reprojection errors in raw
 /// pixels) from the corners of `find_board`; NaN corners are ignored. nullopt if fewer than 6
 /// corners remain (4 for a single tag), if all but one of them are collinear, or if the RMS of the
-/// fit exceeds 2 px.
+/// fit exceeds `most_rms` [pixel_unit].
 ///
 /// The covariance is s^2 (J^T J)^-1, s^2 = r^T r / (2 n - 6), with the residuals r of n corners.
 std::optional<BoardPose> board_pose(const std::vector<Eigen::Vector2d>& corners_raw_px,
                                     const Board& board,
-                                    const Camera& camera);
+                                    const Camera& camera,
+                                    double most_rms = 2);
 
 /// Projects the board's corners into the image [raw px].
 std::vector<Eigen::Vector2d> project_board(const Board& board,
@@ -99,6 +100,23 @@ std::vector<Eigen::Vector2d> at_time_stamp(std::vector<Eigen::Vector2d> corners,
                                            const Camera& camera,
                                            double readout_s);
 
+/// Returns the minimum of the parabola through sums of squared errors [px^2] at three readout
+/// times, one step before it, at it and one step after it, relative to the middle one, and its
+/// standard deviation with `freedom` degrees of freedom. nullopt if there is no minimum.
+std::optional<Readout> least_readout(const Eigen::Array3d& squares_px2,
+                                     double step_s,
+                                     double freedom);
+
+/// Estimates the readout time of a calibrated camera as that with the least reprojection errors of
+/// the board in these frames, each with its own pose. nullopt if it is below four standard
+/// deviations, or if fewer than ten frames have velocities. Its standard deviation is the largest
+/// of the least squares', a jackknife's over blocks of time, and 1 ms for errors of lens and board.
+std::optional<Readout> readout_from_board(const BoardCorners& corners,
+                                          std::span<const int> frames,
+                                          std::span<const std::int64_t> timestamps_ns,
+                                          const Board& board,
+                                          const Camera& camera);
+
 /// Called after each processed frame, by one thread at a time.
 using BoardProgress = std::function<void(int done, int of)>;
 
@@ -107,7 +125,8 @@ using BoardProgress = std::function<void(int done, int of)>;
 /// 0.5 px and four times the median of all frames.
 ///
 /// If the camera has a readout time, the corners are moved to the time stamp by their velocities in
-/// neighboring frames. A frame without velocities then has no pose.
+/// neighboring frames. A frame without velocities then has no pose. An unknown readout time is
+/// estimated from the corners (`readout_from_board`), and 0 if it is not significant.
 ///
 /// Frames are processed in parallel. The recording's cache folder, if any, keeps the corners so
 /// that each frame is processed only once. Among symmetric poses a frame gets the one nearest in
@@ -120,8 +139,9 @@ GroundTruth board_truth(const Recording& recording,
                         const std::stop_token& stop = {},
                         const BoardProgress& progress = {});
 
-/// The same for `frames` frames from `start`, with the median of the first 30 frames (fewer at the
-/// end of the recording), so that a pose does not depend on the window's length.
+/// The same for `frames` frames from `start`, with the median and the readout time of the first 30
+/// frames (fewer at the end of the recording), so that a pose does not depend on the window's
+/// length.
 GroundTruth board_truth(const Recording& recording,
                         int start,
                         int frames,

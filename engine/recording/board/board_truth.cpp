@@ -28,16 +28,16 @@ constexpr int kMedianFrames = 30;
 /// Results by frame before a symmetric pose is chosen.
 using BoardPoses = std::map<int, BoardPose>;
 
-BoardCorners corners_of(const Recording& recording,
-                        const std::vector<int>& frames,
-                        const std::stop_token& stop,
-                        const BoardProgress& progress) {
-  const auto cache = board_cache_file(recording);
-  BoardCorners corners = cache ? load_board_corners(*cache) : BoardCorners{};
+/// Adds the corners of frames that are missing.
+void add_corners(const Recording& recording,
+                 const std::vector<int>& frames,
+                 BoardCorners& corners,
+                 const std::stop_token& stop,
+                 const BoardProgress& progress) {
   std::vector<int> missing;
   std::ranges::copy_if(
       frames, std::back_inserter(missing), [&](int frame) { return !corners.contains(frame); });
-  if (missing.empty()) return corners;
+  if (missing.empty()) return;
   const int of = static_cast<int>(frames.size());
   int done = of - static_cast<int>(missing.size());
   BoardCorners found;
@@ -48,6 +48,7 @@ BoardCorners corners_of(const Recording& recording,
     found[frame] = std::move(in_frame);
     if (progress) progress(++done, of);
   };
+  const auto cache = board_cache_file(recording);
   const auto save = [&] {
     const StopScope to_the_end(nullptr);
     if (cache && !found.empty()) save_board_corners(*cache, found);
@@ -60,17 +61,11 @@ BoardCorners corners_of(const Recording& recording,
   }
   save();
   corners.merge(found);
-  return corners;
 }
 
-double readout_s(const Recording& recording) {
-  return recording.camera.readout ? recording.camera.readout->seconds : 0;
-}
-
-/// Adds the frames that determine the corners' velocities, if these matter.
-std::vector<int> with_neighbors(const Recording& recording, const std::vector<int>& frames) {
+/// Adds the frames that determine the corners' velocities.
+std::vector<int> with_neighbors(const Recording& recording, std::span<const int> frames) {
   constexpr int kReach = 2;
-  if (readout_s(recording) == 0) return frames;
   std::set<int> all;
   for (const int frame : frames)
     for (int k = -kReach; k <= kReach; ++k)
@@ -81,35 +76,59 @@ std::vector<int> with_neighbors(const Recording& recording, const std::vector<in
 /// Returns the corners at the time stamp of the frame; empty if they or their velocities are
 /// unknown.
 std::vector<Eigen::Vector2d> corners_at(const Recording& recording,
+                                        double readout_s,
                                         const BoardCorners& corners,
                                         int frame) {
   const std::vector<Eigen::Vector2d>& seen = corners.at(frame);
-  if (seen.empty() || readout_s(recording) == 0) return seen;
+  if (seen.empty() || readout_s == 0) return seen;
   const auto velocities_px_s = corner_velocities(corners, frame, recording.timestamps_ns);
   if (velocities_px_s.empty()) return {};
-  return at_time_stamp(seen, velocities_px_s, recording.camera, readout_s(recording));
+  return at_time_stamp(seen, velocities_px_s, recording.camera, readout_s);
 }
 
-BoardPoses poses_of(const Recording& recording,
+struct FoundPoses {
+  BoardPoses poses;
+  std::optional<Readout> estimated_readout;
+};
+
+/// Estimates an unknown readout time from the first `examined` of the frames.
+FoundPoses poses_of(const Recording& recording,
                     const std::vector<int>& frames,
+                    std::size_t examined,
                     const std::stop_token& stop,
                     const BoardProgress& progress) {
-  const BoardCorners corners =
-      corners_of(recording, with_neighbors(recording, frames), stop, progress);
+  const Camera& camera = recording.camera;
+  const auto cache = board_cache_file(recording);
+  BoardCorners corners = cache ? load_board_corners(*cache) : BoardCorners{};
+  FoundPoses result;
+  if (!camera.readout) {
+    add_corners(recording, frames, corners, stop, progress);
+    result.estimated_readout = readout_from_board(corners,
+                                                  std::span(frames).first(examined),
+                                                  recording.timestamps_ns,
+                                                  *recording.board,
+                                                  camera);
+  }
+  const double readout_s =
+      camera.readout.value_or(result.estimated_readout.value_or(Readout{})).seconds;
+  add_corners(recording,
+              readout_s != 0 ? with_neighbors(recording, frames) : frames,
+              corners,
+              stop,
+              progress);
   std::vector<int> found;
   std::ranges::copy_if(
       frames, std::back_inserter(found), [&](int frame) { return corners.contains(frame); });
-  BoardPoses poses;
   std::mutex mutex;
   in_parallel(static_cast<int>(found.size()),
               static_cast<int>(std::thread::hardware_concurrency()),
               [&](int k) {
-                const auto seen = corners_at(recording, corners, found[k]);
-                const auto pose = board_pose(seen, *recording.board, recording.camera);
+                const auto seen = corners_at(recording, readout_s, corners, found[k]);
+                const auto pose = board_pose(seen, *recording.board, camera);
                 const std::scoped_lock lock(mutex);
-                if (pose) poses.emplace(found[k], *pose);
+                if (pose) result.poses.emplace(found[k], *pose);
               });
-  return poses;
+  return result;
 }
 
 /// Returns the RMS above which a fit is rejected as wrong [px].
@@ -130,19 +149,20 @@ Pose nearest(const Pose& pose, const std::vector<Pose>& symmetries, const Pose& 
   return *std::ranges::min_element(symmetries, {}, turned) * pose;
 }
 
-GroundTruth in_one_frame(const BoardPoses& poses,
+GroundTruth in_one_frame(const FoundPoses& of_frames,
                          std::span<const int> frames,
                          const Board& board,
                          double most_rms_px) {
   GroundTruth truth;
   truth.source = board_title(board);
+  truth.estimated_readout = of_frames.estimated_readout;
   truth.poses.resize(frames.size());
   truth.uncertainties.resize(frames.size());
   const auto symmetries = board_symmetries(board);
   std::optional<Pose> last;
   for (std::size_t i = 0; i < frames.size(); ++i) {
-    const auto pose = poses.find(frames[i]);
-    if (pose == poses.end()) continue;
+    const auto pose = of_frames.poses.find(frames[i]);
+    if (pose == of_frames.poses.end()) continue;
     const BoardPose& found = pose->second;
     if (found.uncertainty.rms_px > most_rms_px) continue;
     last = last ? nearest(found.pose, symmetries, *last) : found.pose;
@@ -167,9 +187,9 @@ GroundTruth board_truth(const Recording& recording,
                         const std::vector<int>& frames,
                         const std::stop_token& stop,
                         const BoardProgress& progress) {
-  const BoardPoses poses = poses_of(recording, frames, stop, progress);
+  const auto found = poses_of(recording, frames, frames.size(), stop, progress);
   return in_one_frame(
-      poses, frames, *recording.board, largest_rms_px(poses, frames, recording.camera));
+      found, frames, *recording.board, largest_rms_px(found.poses, frames, recording.camera));
 }
 
 GroundTruth board_truth(const Recording& recording,
@@ -180,11 +200,11 @@ GroundTruth board_truth(const Recording& recording,
   const int left = recording.frame_count() - start;
   std::vector<int> considered(std::max(frames, std::min(kMedianFrames, left)));
   std::iota(considered.begin(), considered.end(), start);
-  const BoardPoses poses = poses_of(recording, considered, stop, progress);
+  const std::size_t examined = std::min(kMedianFrames, left);
+  const auto found = poses_of(recording, considered, examined, stop, progress);
   const std::span<const int> all = considered;
-  const double most_rms_px =
-      largest_rms_px(poses, all.first(std::min(kMedianFrames, left)), recording.camera);
-  return in_one_frame(poses, all.first(frames), *recording.board, most_rms_px);
+  const double most_rms_px = largest_rms_px(found.poses, all.first(examined), recording.camera);
+  return in_one_frame(found, all.first(frames), *recording.board, most_rms_px);
 }
 
 std::optional<PoseUncertainty> median_uncertainty(

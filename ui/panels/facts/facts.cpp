@@ -44,12 +44,15 @@ std::optional<ResultRow> truth_row(const Inspection& inspection) {
   const auto uncertainty = median_uncertainty(inspection.truth->uncertainties);
   if (!uncertainty) return std::nullopt;
   const std::string note = board_truth_note(inspection);
+  const bool estimated = inspection.truth->estimated_readout.has_value();
   std::string tooltip = "Uncertainty of the ground truth from the board (1 sigma): " +
                         uncertainty_text(*uncertainty) + ". Calibration errors are not included";
-  if (!note.empty()) tooltip += ", nor those of the rolling shutter: " + note;
+  if (!note.empty()) tooltip += (estimated ? "; " : ", nor those of the rolling shutter: ") + note;
   return ResultRow{.label = "Truth",
                    .value = sigma_text(uncertainty->normal_sigma_deg),
-                   .note = note.empty() ? "normal" : "readout unknown",
+                   .note = note.empty() ? "normal"
+                           : estimated  ? "readout estimated"
+                                        : "readout unknown",
                    .tooltip = std::move(tooltip)};
 }
 

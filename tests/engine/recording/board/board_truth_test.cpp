@@ -7,6 +7,7 @@
 
 #include <atomic>
 #include <cstdlib>
+#include <random>
 #include <thread>
 
 #include <gmock/gmock.h>
@@ -257,29 +258,73 @@ BoardCorners rolling_corners(const Recording& recording, const auto& pose_at) {
   return all;
 }
 
+/// Turns and rises in front of the board.
+Pose brisk_path(double time_s) {
+  return looking_at(kTwin, 0.42, 15 + 60 * time_s, 8 + 40 * std::sin(3 * time_s));
+}
+
 TEST_F(BoardCache, PosesAreThoseAtTheTimeStampsOfARollingShutter) {
-  const auto pose_at = [](double time_s) {
-    return looking_at(kTwin, 0.42, 15 + 60 * time_s, 8 + 40 * std::sin(3 * time_s));
-  };
   Recording rolling = recording(12);
   for (int i = 0; i < 12; ++i) rolling.timestamps_ns[i] = 33'000'000LL * i;
   for (const auto direction : {ReadoutDirection::down, ReadoutDirection::left}) {
     rolling.camera.readout = Readout{0.025, 1e-4};
     rolling.camera.readout_direction = direction;
     rolling.timestamps_ns.back() += static_cast<int>(direction);  // a cache file of its own
-    save_board_corners(*board_cache_file(rolling), rolling_corners(rolling, pose_at));
+    save_board_corners(*board_cache_file(rolling), rolling_corners(rolling, brisk_path));
     const auto truth = board_truth(rolling, std::vector{0, 5, 11});
     rolling.camera.readout.reset();
     const auto uncorrected = board_truth(rolling, std::vector{0, 5, 11});
     for (int k = 0; k < 3; ++k) {
       const int frame = std::array{0, 5, 11}[k];
-      const Pose expected = pose_at(1e-9 * static_cast<double>(rolling.timestamps_ns[frame]));
+      const Pose expected = brisk_path(1e-9 * static_cast<double>(rolling.timestamps_ns[frame]));
       ASSERT_TRUE(truth.poses[k] && uncorrected.poses[k]) << frame;
       EXPECT_LT(rotation_error_deg(*truth.poses[k], expected), 0.05) << frame;
       EXPECT_LT((truth.poses[k]->p_wc - expected.p_wc).norm(), 5e-4) << frame;
       EXPECT_GT(rotation_error_deg(*uncorrected.poses[k], expected), 0.07) << frame;
     }
   }
+}
+
+struct KnownAndUnknown {
+  GroundTruth known, unknown;
+};
+
+/// Returns the truth from noisy corners of a camera with known and with unknown readout time.
+KnownAndUnknown truth_of_noisy(Recording recording, double readout_s, unsigned seed) {
+  for (int i = 0; i < recording.frame_count(); ++i) recording.timestamps_ns[i] = 33'000'000LL * i;
+  recording.timestamps_ns.back() += seed;  // a cache file of its own
+  recording.camera.readout = Readout{readout_s, 1e-4};
+  BoardCorners corners = rolling_corners(recording, brisk_path);
+  std::mt19937 random(seed);
+  std::normal_distribution<double> noise_px(0, 0.1);
+  for (auto& [frame, in_frame] : corners)
+    for (Eigen::Vector2d& px : in_frame) px += Eigen::Vector2d(noise_px(random), noise_px(random));
+  save_board_corners(*board_cache_file(recording), corners);
+  GroundTruth known = board_truth(recording, 0, recording.frame_count());
+  recording.camera.readout.reset();
+  return {std::move(known), board_truth(recording, 0, recording.frame_count())};
+}
+
+TEST_F(BoardCache, AnUnknownReadoutTimeIsEstimated) {
+  double squares = 0;
+  constexpr int kSeeds = 20;
+  for (int seed = 0; seed < kSeeds; ++seed) {
+    const double readout_s = seed % 2 == 0 ? 0.025 : -0.012;
+    const auto [known, unknown] = truth_of_noisy(recording(14), readout_s, seed);
+    ASSERT_TRUE(unknown.estimated_readout && !known.estimated_readout) << seed;
+    const auto [seconds, sigma_s] = *unknown.estimated_readout;
+    squares += std::pow((seconds - readout_s) / sigma_s, 2) / kSeeds;
+    for (const int frame : {0, 6}) {
+      ASSERT_TRUE(known.poses[frame] && unknown.poses[frame]);
+      EXPECT_LT(rotation_error_deg(*unknown.poses[frame], *known.poses[frame]), 0.06) << seed;
+    }
+  }
+  EXPECT_LT(squares, 1.5);
+}
+
+TEST_F(BoardCache, AGlobalShutterHasNoReadoutTime) {
+  for (int seed = 0; seed < 20; ++seed)
+    EXPECT_FALSE(truth_of_noisy(recording(14), 0, seed).unknown.estimated_readout) << seed;
 }
 
 TEST_F(BoardCache, FramesWithoutVelocitiesHaveNoPoseWithARollingShutter) {

@@ -144,6 +144,9 @@ TEST(Results, SayThatTruthFromTheBoardLacksTheReadoutTime) {
   EXPECT_THAT(rows_of(&inspection).at("Truth").tooltip, HasSubstr("`calibrate` estimates it"));
   recording->camera.readout = Readout{0.01, 1e-3};
   EXPECT_EQ(rows_of(&inspection).at("Truth").note, "normal");
+  truth->estimated_readout = Readout{0.01, 1e-3};
+  EXPECT_EQ(rows_of(&inspection).at("Truth").note, "readout estimated");
+  EXPECT_THAT(rows_of(&inspection).at("Truth").tooltip, HasSubstr("10.0 +- 1.0 ms"));
 }
 
 TEST(Results, HaveUnitsAndSensibleDigits) {
