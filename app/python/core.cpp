@@ -4,6 +4,7 @@
 // when they are used.
 #include "app/python/bindings.h"
 #include "engine/base/error.h"
+#include "engine/methods/plane/rolling_shutter.h"
 
 #include <algorithm>
 #include <cmath>
@@ -78,7 +79,7 @@ py::array inliers_of(const Solved& result) {
 
 /// Returns undistorted minus projected pixels of frames and tracks; NaN without a point.
 py::array residuals_of(const Solved& result) {
-  const Window& window = *result.window;
+  const Window window = as_seen_at_time_stamps(*result.window, *result);
   py::array_t<double> residuals({window.frame_count(), window.track_count(), 2});
   std::fill_n(residuals.mutable_data(), residuals.size(), std::nan(""));
   for (int i = 0; i < std::ssize(result->cameras); ++i) {

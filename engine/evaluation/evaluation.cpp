@@ -2,11 +2,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/evaluation/evaluation.h"
 
+#include "engine/geometry/homography.h"
 #include "engine/geometry/statistics.h"
 #include "engine/methods/certainty/shared_information.h"
 #include "engine/methods/common/window_checks.h"
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace gpo {
 namespace {
@@ -43,7 +46,41 @@ double normal_angle_deg(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
   return angle_deg(a, a.dot(b) < 0 ? Eigen::Vector3d(-b) : b);
 }
 
+/// Returns the median transfer error of tracks by the true homographies; infinity without tracks.
+double true_error_px(const Window& window,
+                     const WindowTruth& truth,
+                     const std::vector<int>& tracks) {
+  const Pose& reference = *truth.cameras.front();
+  const Plane plane = plane_in_camera(*truth.plane, reference);
+  std::vector<double> errors_px;
+  for (int i = 1; i < window.frame_count(); ++i) {
+    if (!truth.cameras[i]) continue;
+    const Pose pose = inverse(reference) * *truth.cameras[i];
+    const Eigen::Matrix3d H =
+        window.K * pose.R_wc.transpose() *
+        (Eigen::Matrix3d::Identity() + pose.p_wc * plane.normal.transpose() / plane.distance) *
+        window.K.inverse();
+    for (const int j : tracks) {
+      const double error_px =
+          (transfer(H, window.points_px[0].col(j)) - window.points_px[i].col(j)).norm();
+      if (std::isfinite(error_px)) errors_px.push_back(error_px);
+    }
+  }
+  return errors_px.empty() ? std::numeric_limits<double>::infinity() : median(std::move(errors_px));
+}
+
 }  // namespace
+
+std::optional<int> plane_of_truth(const Window& window, const WindowTruth& truth) {
+  constexpr double kBetter = 3, kMostThresholds = 5;
+  if (!truth.plane || !truth.cameras.front() || window.planes.empty()) return 0;
+  std::vector<double> errors_px;
+  for (const WindowPlane& plane : window.planes)
+    errors_px.push_back(true_error_px(window, truth, plane.tracks));
+  const auto best = std::ranges::min_element(errors_px);
+  if (*best > kMostThresholds * window.threshold_px && std::isfinite(*best)) return std::nullopt;
+  return kBetter * *best < errors_px.front() ? static_cast<int>(best - errors_px.begin()) : 0;
+}
 
 Evaluation evaluate(const Initialization& initialization,
                     const Window& window,
@@ -70,6 +107,11 @@ Evaluation evaluate(const Initialization& initialization,
       evaluation.pde_m = std::abs(*evaluation.scale * distance - actual_plane->distance);
     if (const auto& T = evaluation.T_true_est)
       evaluation.pne_aligned_deg = normal_angle_deg(T->R_ab * normal, truth.plane->normal);
+  }
+  const auto& uncertainty = initialization.uncertainty;
+  if (uncertainty && uncertainty->bound_known_rotations_deg) {
+    evaluation.pne_bound_deg = uncertainty->bound_known_rotations_deg;
+    return evaluation;
   }
   const std::vector<double> errors =
       reprojection_errors_px(window, initialization.plane, initialization.cameras);

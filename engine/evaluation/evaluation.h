@@ -8,6 +8,11 @@
 
 namespace gpo {
 
+/// Returns the number of the window's plane that the truth describes: the one with most tracks, 0,
+/// unless those of another plane agree three times better with the homographies of the true poses
+/// and plane. nullopt if none of them is within five thresholds of inliers.
+std::optional<int> plane_of_truth(const Window& window, const WindowTruth& truth);
+
 /// Errors of an initialization. Unknown ones are nullopt: ATE, scale and PDE if the true path is a
 /// point, the aligned PNE also if it is a line; all plane errors if the true plane or the reference
 /// pose is unknown.

@@ -7,6 +7,7 @@
 #include "engine/files/refuse.h"
 
 #include <array>
+#include <set>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -124,8 +125,10 @@ ExportNotes write_export(const Inspection& inspection,
 
 std::string map_points_ply(const Inspection& inspection, const ExportWorld& world) {
   ExportScene scene = export_scene(inspection, {.metric = world.meters});
+  std::set<int> tracks;
+  for (const MapPoint& point : inspection.initialization->points) tracks.insert(point.track);
   std::erase_if(scene.points,
-                [&](const ScenePoint& point) { return point.plane != inspection.window->leader; });
+                [&](const ScenePoint& point) { return !tracks.contains(point.track); });
   ExportNotes notes;
   return ply_text(scene, notes);
 }

@@ -177,9 +177,10 @@ ordered_json scene_update(const ExportScene& scene) {
       0.01 * scene.world.T_world_reference.scale * scene.inspection.initialization->plane.distance;
   ordered_json points = entity(scene, "tracks");
   for (const ScenePoint& point : scene.points)
-    points["spheres"].push_back(solid_json(pose_json(Eigen::Matrix3d::Identity(), point.position),
-                                           diameter,
-                                           color_json(plane_color(point.plane), 1)));
+    points["spheres"].push_back(
+        solid_json(pose_json(Eigen::Matrix3d::Identity(), point.position),
+                   diameter,
+                   color_json(point.plane ? plane_color(*point.plane) : kOutlierRgb, 1)));
   entities.push_back(std::move(points));
   std::vector<Vector3d> centers;
   for (const Pose& camera : scene.cameras) centers.push_back(camera.p_wc);

@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 #include <utility>
 
 #include <Eigen/LU>
@@ -21,9 +22,24 @@ using Eigen::Matrix3d, Eigen::Vector2d, Eigen::Vector3d;
 
 constexpr double kMargin = 0.1;  // around the points of a plane, of their extent
 
-bool is_inlier_of(const Window& window, int plane, int frame, int track) {
-  return plane == window.leader ? window.inlier[frame][track]
-                                : window.planes[plane].inlier[frame][track];
+/// Returns whether a frame sees the point, as an inlier of its plane if it is on one.
+bool is_seen(const Window& window, const ScenePoint& point, int frame) {
+  if (!point.plane) return window.points_px[frame].col(point.track).allFinite();
+  return *point.plane == window.leader ? window.inlier[frame][point.track]
+                                       : window.planes[*point.plane].inlier[frame][point.track];
+}
+
+/// Returns the camera of a frame in the unit of the export.
+RollingCamera exported_camera(const ExportScene& scene, int frame) {
+  RollingCamera camera = rolling_camera(scene.inspection, frame);
+  camera.motion.translation_s *= scene.world.T_world_reference.scale;
+  camera.motion.translation_s2 *= scene.world.T_world_reference.scale;
+  return camera;
+}
+
+/// Returns the plane of a track of the result, as its inlier or that of another plane.
+std::optional<int> plane_of_point(const Window& window, int track) {
+  return window.is_inlier_track(track) ? std::optional(window.leader) : window.plane_of(track);
 }
 
 Rgb color_at(const cv::Mat& bgr, const Vector2d& raw_px) {
@@ -39,8 +55,10 @@ void observe(const ExportScene& scene, ScenePoint& point) {
   const Window& window = *scene.inspection.window;
   double squares = 0;
   for (int i = 0; i < window.frame_count(); ++i) {
-    if (!is_inlier_of(window, point.plane, i, point.track)) continue;
-    const Vector3d seen = window.K * to_camera(scene.cameras[i], point.position);
+    if (!is_seen(window, point, i)) continue;
+    const Vector2d raw_px = scene.inspection.tracks->raw_px[i].col(point.track);
+    const Pose at_row = scene.cameras[i] * pose_at_row(exported_camera(scene, i), raw_px);
+    const Vector3d seen = window.K * to_camera(at_row, point.position);
     if (!(seen.z() > 0)) continue;
     squares += (seen.hnormalized() - window.points_px[i].col(point.track)).squaredNorm();
     point.frames.push_back(i);
@@ -49,14 +67,15 @@ void observe(const ExportScene& scene, ScenePoint& point) {
   point.rms_px = std::sqrt(squares / count);
 }
 
-void add_points(ExportScene& scene,
-                const std::vector<MapPoint>& points,
-                int plane,
-                const cv::Mat& image) {
+/// Adds the points of tracks that have none yet.
+void add_points(ExportScene& scene, const std::vector<MapPoint>& points, const cv::Mat& image) {
+  std::set<int> known;
+  for (const ScenePoint& point : scene.points) known.insert(point.track);
   for (const MapPoint& found : points) {
+    if (known.contains(found.track)) continue;
     ScenePoint point;
     point.track = found.track;
-    point.plane = plane;
+    point.plane = plane_of_point(*scene.inspection.window, found.track);
     point.position = scene.world.T_world_reference * found.position;
     point.color = color_at(image, scene.inspection.tracks->raw_px[0].col(found.track));
     observe(scene, point);
@@ -153,7 +172,7 @@ Vector2d pixel_in_reference(const ExportScene& scene, const Vector3d& point) {
   const Vector2d nowhere(-10, -10);
   const Vector3d seen = to_camera(scene.cameras.front(), point);
   if (!(seen.z() > 1e-9)) return nowhere;
-  const Vector2d pixel = project(scene.inspection.recording->camera, seen);
+  const Vector2d pixel = project(exported_camera(scene, 0), seen);
   return pixel.allFinite() ? pixel : nowhere;
 }
 
@@ -190,9 +209,8 @@ ExportScene export_scene(const Inspection& inspection, const ExportChoices& choi
   const int leader = inspection.window->leader;
   const cv::Mat image =
       recording.images ? recording.images->bgr(inspection.window->start) : cv::Mat();
-  add_points(scene, result.points, leader, image);
-  for (const PlanePatch& patch : plane_patches(inspection))
-    add_points(scene, patch.points, patch.number, image);
+  add_points(scene, result.points, image);
+  for (const PlanePatch& patch : plane_patches(inspection)) add_points(scene, patch.points, image);
   add_cubes(scene, choices.cube_side);
   add_plane(scene, leader, result.plane);
   for (const PlaneEstimate& other : result.planes)

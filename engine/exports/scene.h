@@ -32,11 +32,12 @@ using Rgb = std::array<std::uint8_t, 3>;
 
 struct ScenePoint {
   int track = 0;                                       ///< column in the window
-  int plane = 0;                                       ///< number in the window
+  std::optional<int> plane = std::nullopt;             ///< number in the window; nullopt: on none
   Eigen::Vector3d position = Eigen::Vector3d::Zero();  ///< [unit of the export]
-  Rgb color{128, 128, 128};      ///< from the reference image; gray without it
-  std::vector<int> frames = {};  ///< in the window: inlier of its plane, in front of the camera
-  double rms_px = 0;             ///< reprojection error over `frames`, undistorted
+  Rgb color{128, 128, 128};  ///< from the reference image; gray without it
+  /// In the window: in front of the camera, inlier of its plane or, on none, seen.
+  std::vector<int> frames = {};
+  double rms_px = 0;  ///< reprojection error over `frames`, undistorted
 };
 
 struct ScenePlane {

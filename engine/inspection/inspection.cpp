@@ -162,15 +162,39 @@ const Plane* estimated_plane(const Inspection& inspection, int number) {
   return found == result.planes.end() ? nullptr : &found->plane;
 }
 
+std::optional<Readout> readout_of_truth(const Inspection& inspection) {
+  const auto& known = inspection.recording->camera.readout;
+  return known || !inspection.truth ? known : inspection.truth->estimated_readout;
+}
+
+RollingCamera rolling_camera(const Inspection& inspection, int frame) {
+  RollingCamera camera{inspection.recording->camera};
+  if (frame >= std::ssize(inspection.row_motions)) return camera;
+  camera.row_delay_s = inspection.initialization->row_delay_s.value_or(0);
+  camera.motion = inspection.row_motions[frame];
+  return camera;
+}
+
+RollingCamera true_rolling_camera(const Inspection& inspection, int frame) {
+  RollingCamera camera = rolling_camera(inspection, frame);
+  const auto& plane = inspection.truth->plane;
+  const auto& reference = inspection.truth->cameras.front();
+  const double unit =
+      plane && reference ? std::abs(plane_in_camera(*plane, *reference).distance) : 1;
+  camera.motion.translation_s *= unit / inspection.initialization->plane.distance;
+  camera.motion.translation_s2 *= unit / inspection.initialization->plane.distance;
+  if (const auto readout = readout_of_truth(inspection))
+    camera.row_delay_s = readout->seconds / (readout_lines(camera.camera) - 1);
+  return camera;
+}
+
 std::optional<Vector3d> point_on_plane(const Inspection& inspection,
                                        int frame,
                                        const Eigen::Vector2d& raw_px,
                                        const Plane& plane) {
   const auto& cameras = inspection.initialization->cameras;
   if (frame < 0 || frame >= std::ssize(cameras)) return std::nullopt;
-  const Camera& camera = inspection.recording->camera;
-  const Vector3d ray = intrinsic_matrix(camera).inverse() * undistort(camera, raw_px).homogeneous();
-  return intersect(plane, cameras[frame], ray);
+  return intersect(plane, cameras[frame], rolling_camera(inspection, frame), raw_px);
 }
 
 ScaleSource scale_source(const Inspection& inspection) {
@@ -287,6 +311,13 @@ std::vector<TruthJump> truth_jumps(const Inspection& inspection) {
 
 std::string board_truth_note(const Inspection& inspection) {
   const bool from_board = inspection.truth && !inspection.truth->uncertainties.empty();
+  if (from_board && inspection.truth->estimated_readout)
+    return fmt::format(
+        "ground truth from the {}: with a readout time of {:.1f} +- {:.1f} ms, "
+        "estimated from its corners",
+        inspection.truth->source,
+        1e3 * inspection.truth->estimated_readout->seconds,
+        1e3 * inspection.truth->estimated_readout->sigma_s);
   const auto& result = inspection.initialization;
   if (!from_board || !result) return "";
   const auto& uncertainty = result->uncertainty;
@@ -294,7 +325,8 @@ std::string board_truth_note(const Inspection& inspection) {
   if (!rolling || inspection.recording->camera.readout) return "";
   return fmt::format(
       "the tracks show a rolling shutter, but the ground truth from the {} takes all rows as read "
-      "at once, as the readout time is unknown; `calibrate` estimates it",
+      "at once: the readout time is unknown, and the board does not determine it in this window; "
+      "`calibrate` estimates it from the whole recording",
       inspection.truth->source);
 }
 
@@ -304,6 +336,9 @@ std::vector<std::string> notes_of(const Inspection& inspection) {
   for (const auto& note :
        {inspection.gyroscope_note, inspection.frames_note, board_truth_note(inspection)})
     if (!note.empty()) notes.push_back(note);
+  if (const auto& e = inspection.evaluation;
+      e && !e->pne_deg && inspection.truth->plane && inspection.truth->cameras.front())
+    notes.emplace_back("the ground truth describes another plane: no PNE and PDE");
   if (const auto missing = missing_plane(window, inspection.settings.options); !missing.empty())
     notes.push_back(fmt::format("{}; plane {} leads", missing, window.leader + 1));
   for (const auto& reason : {inspection.measured_scale ? inspection.measured_scale->reason : "",

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "engine/evaluation/evaluation.h"
+#include "engine/geometry/rolling_camera.h"
 #include "engine/inertial/inertial_alignment.h"
 #include "engine/inspection/settings/settings_table.h"
 #include "engine/methods/methods.h"
@@ -109,6 +110,8 @@ struct Inspection {
   std::shared_ptr<const Window> window;
   std::shared_ptr<const WindowTruth> truth;  ///< null if unknown
   std::shared_ptr<const Initialization> initialization;
+  /// Motion of the estimated cameras around each frame; empty if no row delay is known.
+  std::vector<RowMotion> row_motions = {};
   /// Gravity and metric scale; nullopt if the initialization failed, they are not requested, or the
   /// recording has no accelerometer.
   std::optional<InertialAlignment> inertial;
@@ -148,6 +151,17 @@ std::optional<int> plane_near(const Inspection& inspection,
 
 /// Returns the estimate of a plane by its number; null if there is none.
 const Plane* estimated_plane(const Inspection& inspection, int number);
+
+/// Returns the camera's readout time, else that estimated from a board's corners; nullopt if
+/// unknown.
+std::optional<Readout> readout_of_truth(const Inspection& inspection);
+
+/// Returns the estimated camera of a frame; its rows are read one after the other if the result has
+/// a row delay. The initialization is ok.
+RollingCamera rolling_camera(const Inspection& inspection, int frame);
+/// Returns the same with the row delay of `readout_of_truth`, if known. The unit of its motion is
+/// that of the truth, which must be known.
+RollingCamera true_rolling_camera(const Inspection& inspection, int frame);
 
 /// Intersects a pixel's ray with a plane, in the reference camera's frame; nullopt if it misses.
 std::optional<Eigen::Vector3d> point_on_plane(const Inspection& inspection,
@@ -214,12 +228,13 @@ std::string inliers_note(const Inspection& inspection);
 /// Returns the jumps of the ground truth within the window; empty without truth.
 std::vector<TruthJump> truth_jumps(const Inspection& inspection);
 
-/// Returns that the poses of a ground truth from a board are wrong because its corners were not
-/// read at the time stamp, by a rolling shutter of unknown readout time; empty if none is known.
+/// Returns which readout time, estimated from its corners, the ground truth from a board has, or
+/// that its poses are wrong because the tracks show a rolling shutter and the board does not
+/// determine its readout time; empty if neither.
 std::string board_truth_note(const Inspection& inspection);
 
 /// Returns one line for each remark on a result: a requested plane that does not exist, a jump of
-/// the ground truth, a ground truth from a board that ignores a rolling shutter.
+/// the ground truth, the readout time of a ground truth from a board.
 std::vector<std::string> notes_of(const Inspection& inspection);
 
 /// Result for one of many settings.

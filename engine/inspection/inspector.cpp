@@ -4,6 +4,7 @@
 
 #include "engine/base/error.h"
 #include "engine/files/refuse.h"
+#include "engine/methods/plane/rolling_shutter.h"
 #include "engine/methods/recording_method.h"
 #include "engine/pipeline/method_defaults.h"
 #include "engine/recording/images/frame_faults.h"
@@ -319,11 +320,14 @@ std::shared_ptr<const Inspection> Inspector::inspect(const Settings& settings,
   stages.initialize(request, inspection);
   if (stop.stop_requested()) return nullptr;
   if (inspection.initialization->ok) {
+    if (inspection.initialization->row_delay_s || readout_of_truth(inspection))
+      inspection.row_motions = row_motions(*inspection.window, *inspection.initialization);
     inspection.measured_scale = measure_scale(inspection);
     inspection.chosen_world = choose_world(inspection);
     inspection.other_cubes = place_other_cubes(inspection);
-    // The truth describes one plane, assumed to be the one with most tracks.
-    const bool main_plane_is_true = settings.options.plane == 1;
+    const Window& window = *inspection.window;
+    const bool main_plane_is_true =
+        !inspection.truth || plane_of_truth(window, *inspection.truth) == window.leader;
     if (inspection.truth) {
       Evaluation& e = inspection.evaluation.emplace(evaluate(*inspection.initialization,
                                                              *inspection.window,
@@ -338,13 +342,19 @@ std::shared_ptr<const Inspection> Inspector::inspect(const Settings& settings,
     // The board is on that plane, too.
     const auto board =
         main_plane_is_true ? stages.board_corners.value : std::vector<Eigen::Vector2d>{};
-    const auto place = [&](const Plane& plane, const Pose& reference) {
-      return place_cube(plane, reference, *inspection.recording, *inspection.window, board);
+    const auto place = [&](const Plane& plane, const Pose& reference, const RollingCamera& camera) {
+      return place_cube(plane,
+                        reference,
+                        *inspection.recording,
+                        *inspection.window,
+                        at_time_stamp(board, plane, reference, camera));
     };
-    inspection.cube = place(inspection.initialization->plane, Pose{});
+    inspection.cube =
+        place(inspection.initialization->plane, Pose{}, rolling_camera(inspection, 0));
     const WindowTruth* truth = inspection.truth.get();
     if (main_plane_is_true && truth != nullptr && truth->plane && truth->cameras.front())
-      inspection.true_cube = place(*truth->plane, *truth->cameras.front());
+      inspection.true_cube =
+          place(*truth->plane, *truth->cameras.front(), true_rolling_camera(inspection, 0));
   }
   return std::make_shared<const Inspection>(std::move(inspection));
 }

@@ -199,15 +199,6 @@ void take(const joint::Solution& joint, const Window& window, Fit& fit) {
   fit.observations = std::move(moved);
 }
 
-PlaneMotion motion_of(const Initialization& result) {
-  PlaneMotion motion = gpo::motion_of(result.plane, result.cameras);
-  for (std::size_t k = 1; k < result.planes.size(); ++k) {
-    const auto& [normal, distance] = result.planes[k].plane;
-    motion.others.push_back({result.planes[k].number, normal / distance});
-  }
-  return motion;
-}
-
 /// Returns the result for the window corrected for its own `row_delay`, whose standard deviation
 /// adds to all uncertainties.
 Initialization initialize_at_row_delay(const Window& window,

@@ -91,13 +91,7 @@ std::optional<Initialization> pulled(const Window& window,
   lower_covariances(rows, with_poses * pull.information * with_poses.transpose(), moved);
   move(window, rows, -with_poses * pull.gradient, moved);
   set_plane_uncertainties(moved);
-  const Window seen = moved.row_delay_s
-                          ? without_rolling_shutter(window,
-                                                    motion_of(moved.plane, moved.cameras),
-                                                    moved.uncertainty->rotations,
-                                                    {*moved.row_delay_s})
-                          : window;
-  moved = with_map_points(seen, std::move(moved));
+  moved = with_map_points(as_seen_at_time_stamps(window, moved), std::move(moved));
   return moved.ok ? std::optional(std::move(moved)) : std::nullopt;
 }
 

@@ -200,6 +200,7 @@ ChosenRotations chosen_rotations(const Window& window,
 Window with_rotations(Window window, const Rotations& rotations, const InitializeOptions& options) {
   window.all_tracks = !uses_ransac(options);
   window.rotations = rotations.model;
+  window.camera_is_guess = options.camera_is_guess;
   window.gyro = rotations.gyro;
   if (!rotations.R_wc.empty()) window.R_wc = rotations.R_wc;
   return window;

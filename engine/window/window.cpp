@@ -113,16 +113,18 @@ std::vector<std::vector<Eigen::Matrix2Xd>> typical_lens_moves_px(const Window& w
   const Eigen::Vector2d center = window.K.topRightCorner<2, 1>();
   const double width_px = 2 * center.x() + 1;
   const double corner_px = center.norm();
-  const double moved_px = 0.5 * pixel_unit(window.K);
+  const double focal_share = window.camera_is_guess ? 0.2 : kTypicalLensShare;
+  const double center_share = window.camera_is_guess ? 0.02 : kTypicalLensShare;
+  const double moved_px = window.camera_is_guess ? 0.03 * corner_px : 0.5 * pixel_unit(window.K);
   std::vector<std::vector<Eigen::Matrix2Xd>> moves(5);
   for (const Eigen::Matrix2Xd& points : window.points_px) {
     const Eigen::Matrix2Xd p = points.colwise() - center;
     const Eigen::RowVectorXd r2 = p.colwise().squaredNorm() / (corner_px * corner_px);
     const Eigen::Matrix2Xd cubic = moved_px / corner_px * (p * r2.asDiagonal());
-    moves[0].push_back(kTypicalLensShare * p);
+    moves[0].push_back(focal_share * p);
     for (int axis = 0; axis < 2; ++axis) {
       Eigen::Matrix2Xd shift = Eigen::Matrix2Xd::Zero(2, p.cols());
-      shift.row(axis).setConstant(kTypicalLensShare * width_px);
+      shift.row(axis).setConstant(center_share * width_px);
       moves[1 + axis].push_back(std::move(shift));
     }
     moves[3].push_back(cubic);

@@ -58,10 +58,10 @@ std::string normal_text(const Uncertainty& u, CameraSource source) {
   const char* rotations = to_string(u.rotations);
   const bool guess = source == CameraSource::guess;
   if (u.typical_lens_sigma_deg)
-    return fmt::format("normal {} (lens {}), {} (typical calibration); 1 sigma, rotations {}",
+    return fmt::format("normal {} (lens exact), {} ({}); 1 sigma, rotations {}",
                        sigma_text(u.normal_sigma_deg, 3),
-                       guess ? "a guess, assumed exact" : "exact",
                        sigma_text(*u.typical_lens_sigma_deg, 3),
+                       guess ? "lens a guess" : "typical calibration",
                        rotations);
   return fmt::format(
       "normal {} (1 sigma; rotations {}, lens {})",

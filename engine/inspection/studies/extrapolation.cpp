@@ -24,7 +24,6 @@ constexpr double kUnseen = std::numeric_limits<double>::quiet_NaN();
 /// Returns the points of all planes with an estimate, from the positions in the reference frame.
 std::vector<MapPoint> points_of_planes(const Inspection& inspection) {
   const Window& window = *inspection.window;
-  const Eigen::Matrix3d K_inverse = window.K.inverse();
   std::vector<MapPoint> points;
   for (int j = 0; j < window.track_count(); ++j) {
     if (!window.points_px[0].col(j).allFinite()) continue;
@@ -32,8 +31,9 @@ std::vector<MapPoint> points_of_planes(const Inspection& inspection) {
         window.is_inlier_track(j) ? std::optional(window.leader) : window.plane_of(j);
     const Plane* plane = number ? estimated_plane(inspection, *number) : nullptr;
     if (plane == nullptr) continue;
-    const Vector3d ray = K_inverse * window.points_px[0].col(j).homogeneous();
-    if (const auto point = intersect(*plane, Pose{}, ray)) points.push_back({j, *point});
+    const Eigen::Vector2d raw_px = inspection.tracks->raw_px[0].col(j);
+    if (const auto point = point_on_plane(inspection, 0, raw_px, *plane))
+      points.push_back({j, *point});
   }
   return points;
 }
@@ -65,12 +65,75 @@ Matrix2Xd undistorted(const Inspection& inspection, const Tracks& tracks, int fr
 struct LaterFrame {
   ExtrapolatedCamera camera;
   Matrix2Xd points_px;
+  RowMotion motion;
 };
+
+/// Poses and times of successive frames.
+struct Path {
+  std::vector<Pose> poses;
+  std::vector<std::int64_t> timestamps_ns;
+};
+
+/// Returns the velocity at the end of a path, from its last two steps, without a derivative; zero
+/// with fewer.
+RowMotion motion_at_end(const Path& path) {
+  const std::size_t count = path.poses.size();
+  if (count < 3) return {};
+  const Pose &a = path.poses[count - 3], &b = path.poses[count - 2], &c = path.poses[count - 1];
+  const auto seconds = [&](std::size_t i) {
+    return 1e-9 * static_cast<double>(path.timestamps_ns[i] - path.timestamps_ns[i - 1]);
+  };
+  const double first_s = seconds(count - 2), last_s = seconds(count - 1);
+  const auto at_end = [&](const Vector3d& first, const Vector3d& last) -> Vector3d {
+    return last / last_s + (last / last_s - first / first_s) * last_s / (first_s + last_s);
+  };
+  const Vector3d rotation =
+      at_end(so3_log(a.R_wc.transpose() * b.R_wc), so3_log(b.R_wc.transpose() * c.R_wc));
+  const Vector3d translation_w = at_end(b.p_wc - a.p_wc, c.p_wc - b.p_wc);
+  return {.rotation_rad_s = rotation, .translation_s = c.R_wc.transpose() * translation_w};
+}
+
+/// Moves undistorted pixels to where the points would have been seen at the time stamp.
+Matrix2Xd at_time_stamp(const RollingCamera& camera,
+                        const Pose& pose,
+                        const Eigen::Matrix3Xd& points_w,
+                        Matrix2Xd pixels) {
+  if (camera.row_delay_s == 0) return pixels;
+  const Eigen::Matrix3d K = intrinsic_matrix(camera.camera);
+  for (Eigen::Index k = 0; k < pixels.cols(); ++k) {
+    const Vector3d point_c = to_camera(pose, points_w.col(k));
+    const Vector3d at_row =
+        to_camera(pose_at_row(camera, distort(camera.camera, pixels.col(k))), point_c);
+    pixels.col(k) += (K * point_c).hnormalized() - (K * at_row).hnormalized();
+  }
+  return pixels;
+}
+
+/// Follows the camera to the next frame; its motion and the rows' delay depend on each other.
+std::optional<Resection> follow_rolling(const Path& path,
+                                        std::int64_t timestamp_ns,
+                                        const Eigen::Matrix3Xd& points_w,
+                                        const Matrix2Xd& pixels,
+                                        RollingCamera& camera) {
+  constexpr int kRounds = 3;
+  const Eigen::Matrix3d K = intrinsic_matrix(camera.camera);
+  auto found = follow_camera(path.poses.back(), points_w, pixels, K);
+  for (int round = 0; round < kRounds && found && camera.row_delay_s != 0; ++round) {
+    Path longer = path;
+    longer.poses.push_back(found->pose);
+    longer.timestamps_ns.push_back(timestamp_ns);
+    camera.motion = motion_at_end(longer);
+    found = follow_camera(
+        found->pose, points_w, at_time_stamp(camera, found->pose, points_w, pixels), K);
+  }
+  return found;
+}
 
 /// Locates a frame's camera. Throws InputError with the reason if it cannot be located.
 LaterFrame locate(const Inspection& inspection,
                   const std::vector<MapPoint>& points,
-                  const Pose& before,
+                  const Path& path,
+                  std::int64_t timestamp_ns,
                   Matrix2Xd points_px) {
   const Eigen::Matrix3d& K = inspection.window->K;
   std::vector<int> seen;
@@ -87,8 +150,12 @@ LaterFrame locate(const Inspection& inspection,
     points_w.col(k) = points[seen[k]].position;
     pixels.col(k) = points_px.col(points[seen[k]].track);
   }
-  const auto found = follow_camera(before, points_w, pixels, K);
+  RollingCamera camera{inspection.recording->camera};
+  if (!inspection.row_motions.empty())
+    camera.row_delay_s = inspection.initialization->row_delay_s.value_or(0);
+  const auto found = follow_rolling(path, timestamp_ns, points_w, pixels, camera);
   if (!found) throw InputError("no camera has the points of the planes in front of it");
+  pixels = at_time_stamp(camera, found->pose, points_w, std::move(pixels));
   const double threshold_px = inspection.window->threshold_px;
   int agreeing = 0;
   for (int k = 0; k < count; ++k) {
@@ -101,34 +168,45 @@ LaterFrame locate(const Inspection& inspection,
                                  agreeing,
                                  counted(count, "point"),
                                  threshold_px));
-  LaterFrame later{{.pose = found->pose, .points = agreeing, .median_px = found->median_px},
-                   std::move(points_px)};
-  return later;
+  return {{.timestamp_ns = timestamp_ns,
+           .pose = found->pose,
+           .points = agreeing,
+           .median_px = found->median_px},
+          std::move(points_px),
+          camera.motion};
 }
 
 /// Appends a frame to a window: its inliers agree with the homographies of planes and camera.
 void append_frame(const Inspection& inspection, const LaterFrame& later, Window& window) {
-  const auto inliers_of = [&](const Eigen::Matrix3d& H, const auto& candidate) {
+  RollingCamera camera = rolling_camera(inspection, 0);
+  camera.motion = later.motion;
+  const auto error_px = [&](const Plane& plane, int track) {
+    const auto point =
+        point_on_plane(inspection, 0, inspection.tracks->raw_px[0].col(track), plane);
+    if (!point) return std::numeric_limits<double>::infinity();
+    const Eigen::Vector2d raw_px = project(camera, to_camera(later.camera.pose, *point));
+    return (undistort(camera.camera, raw_px) - later.points_px.col(track)).norm();
+  };
+  const auto inliers_of = [&](const Plane& plane, const auto& candidate) {
     std::vector<bool> inlier(window.track_count(), false);
     for (int j = 0; j < window.track_count(); ++j)
-      inlier[j] = candidate(j) &&
-                  (transfer(H, window.points_px[0].col(j)) - later.points_px.col(j)).norm() <=
-                      window.threshold_px;
+      inlier[j] = candidate(j) && error_px(plane, j) <= window.threshold_px;
     return inlier;
   };
   const Eigen::Matrix3d H =
       homography_of(window, later.camera.pose, inspection.initialization->plane);
   window.timestamps_ns.push_back(later.camera.timestamp_ns);
   window.H_i1.push_back(H);
-  window.inlier.push_back(
-      inliers_of(H, [&](int j) { return inspection.window->is_inlier_track(j); }));
+  window.inlier.push_back(inliers_of(inspection.initialization->plane,
+                                     [&](int j) { return inspection.window->is_inlier_track(j); }));
   for (int k = 0; k < std::ssize(window.planes); ++k) {
     WindowPlane& plane = window.planes[k];
     const Plane* estimate = estimated_plane(inspection, k);
     plane.H_i1.push_back(estimate != nullptr ? homography_of(window, later.camera.pose, *estimate)
                                              : Eigen::Matrix3d::Constant(kUnseen).eval());
-    plane.inlier.push_back(inliers_of(
-        plane.H_i1.back(), [&](int j) { return std::ranges::binary_search(plane.tracks, j); }));
+    plane.inlier.push_back(inliers_of(estimate != nullptr ? *estimate : Plane{}, [&](int j) {
+      return estimate != nullptr && std::ranges::binary_search(plane.tracks, j);
+    }));
   }
   window.points_px.push_back(later.points_px);
   window.R_wc.push_back(later.camera.pose.R_wc);
@@ -148,6 +226,7 @@ std::shared_ptr<const Inspection> extended(const Inspection& inspection,
   for (const LaterFrame& frame : later) {
     append_frame(inspection, frame, window);
     result.cameras.push_back(frame.camera.pose);
+    if (!longer.row_motions.empty()) longer.row_motions.push_back(frame.motion);
   }
   const int frames = window.frame_count();
   longer.tracks = beginning(tracks, frames);
@@ -178,15 +257,19 @@ std::shared_ptr<const Extrapolation> extrapolate(
   const auto tracks = longer_tracks(*inspection, last - window.start, stop, progress);
   if (!tracks) return nullptr;
   const std::vector<MapPoint> points = points_of_planes(*inspection);
+  Path path{inspection->initialization->cameras, window.timestamps_ns};
   std::vector<LaterFrame> later;
   for (int i = known; i < last - window.start && found.end.empty(); ++i) {
     if (stop.stop_requested()) return nullptr;
-    const Pose& before =
-        later.empty() ? inspection->initialization->cameras.back() : later.back().camera.pose;
     try {
-      LaterFrame frame = locate(*inspection, points, before, undistorted(*inspection, *tracks, i));
+      LaterFrame frame = locate(*inspection,
+                                points,
+                                path,
+                                recording.timestamps_ns[window.start + i],
+                                undistorted(*inspection, *tracks, i));
       frame.camera.frame = window.start + i;
-      frame.camera.timestamp_ns = recording.timestamps_ns[window.start + i];
+      path.poses.push_back(frame.camera.pose);
+      path.timestamps_ns.push_back(frame.camera.timestamp_ns);
       found.cameras.push_back(frame.camera);
       later.push_back(std::move(frame));
     } catch (const InputError& error) {

@@ -59,14 +59,15 @@ using Eigen::Vector3d;
 
 constexpr double kFarthest = 3;  // extent in median distances: excludes points near the horizon
 
-std::vector<MapPoint> points_on(const Window& window,
+std::vector<MapPoint> points_on(const Inspection& inspection,
                                 const std::vector<int>& tracks,
                                 const Plane& plane) {
-  const Eigen::Matrix3d K_inverse = window.K.inverse();
+  const RollingCamera reference = rolling_camera(inspection, 0);
   std::vector<MapPoint> points;
   for (const int j : tracks) {
-    const Vector3d ray = K_inverse * window.points_px[0].col(j).homogeneous();
-    if (const auto point = intersect(plane, Pose{}, ray)) points.push_back({j, *point});
+    const Eigen::Vector2d raw_px = inspection.tracks->raw_px[0].col(j);
+    if (const auto point = intersect(plane, Pose{}, reference, raw_px))
+      points.push_back({j, *point});
   }
   if (points.empty()) return points;
   std::vector<double> distances;
@@ -76,12 +77,12 @@ std::vector<MapPoint> points_on(const Window& window,
   return points;
 }
 
-std::optional<PlanePatch> patch_of(const Window& window,
+std::optional<PlanePatch> patch_of(const Inspection& inspection,
                                    int number,
                                    const std::vector<int>& tracks,
                                    const Plane& plane) {
   PlanePatch patch{
-      .number = number, .normal = plane.normal, .points = points_on(window, tracks, plane)};
+      .number = number, .normal = plane.normal, .points = points_on(inspection, tracks, plane)};
   if (patch.points.size() < 3) return std::nullopt;
   // The axis x is as near as possible to the image rows.
   Vector3d x = Vector3d::UnitX() - patch.normal.x() * patch.normal;
@@ -144,7 +145,7 @@ std::vector<PlanePatch> plane_patches(const Inspection& inspection) {
   for (const PlaneEstimate& estimate : inspection.initialization->planes) {
     const int number = estimate.number;
     if (number == window.leader) continue;
-    auto patch = patch_of(window, number, window.planes[number].tracks, estimate.plane);
+    auto patch = patch_of(inspection, number, window.planes[number].tracks, estimate.plane);
     if (patch) patches.push_back(std::move(*patch));
   }
   return patches;
@@ -154,7 +155,7 @@ std::optional<PlanePatch> refused_patch(const Inspection& inspection) {
   const auto& refused = inspection.initialization->refused;
   if (!refused) return std::nullopt;
   const Window& window = *inspection.window;
-  return patch_of(window, window.leader, window.inlier_tracks(0), refused->plane);
+  return patch_of(inspection, window.leader, window.inlier_tracks(0), refused->plane);
 }
 
 std::shared_ptr<const NormalStudy> study_normals(const Inspection& inspection,

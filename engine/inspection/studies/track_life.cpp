@@ -35,6 +35,19 @@ TrackPlane plane_of_track(const Inspection& inspection, int column) {
   return {&result.plane, leader};
 }
 
+/// Returns where a frame's camera sees the point of a plane that the reference frame shows [raw
+/// px]; nullopt if it does not.
+std::optional<Eigen::Vector2d> predicted_px(const Inspection& inspection,
+                                            int frame,
+                                            int column,
+                                            const Plane& plane) {
+  const auto point = point_on_plane(inspection, 0, inspection.tracks->raw_px[0].col(column), plane);
+  if (!point) return std::nullopt;
+  const Eigen::Vector3d point_c = to_camera(inspection.initialization->cameras[frame], *point);
+  const Eigen::Vector2d px = project(rolling_camera(inspection, frame), point_c);
+  return px.allFinite() ? std::optional(px) : std::nullopt;
+}
+
 /// Reads the tracks, not the window, which does not have the excluded ones.
 TrackFrame frame_of(const Inspection& inspection, int frame, int column, const TrackPlane& on) {
   const Tracks& tracks = *inspection.tracks;
@@ -47,8 +60,8 @@ TrackFrame frame_of(const Inspection& inspection, int frame, int column, const T
     seen.transfer_px = if_finite((transfer(window.H_i1[frame], first_px) - undistorted_px).norm());
   }
   if (on.plane != nullptr) {
-    const auto H = homography_of(window, inspection.initialization->cameras[frame], *on.plane);
-    seen.residual_px = if_finite((distort(camera, transfer(H, first_px)) - seen.raw_px).norm());
+    if (const auto predicted = predicted_px(inspection, frame, column, *on.plane))
+      seen.residual_px = if_finite((*predicted - seen.raw_px).norm());
   }
   if (!tracks.forward_backward_px.empty())
     seen.forward_backward_px = if_finite(tracks.forward_backward_px[frame][column]);
@@ -176,14 +189,12 @@ std::vector<ResidualVector> residual_vectors(const Inspection& inspection, int f
   if (!result.ok) return {};
   std::vector<ResidualVector> residuals;
   const auto add = [&](const PlaneEstimate& on, const std::vector<std::vector<bool>>& inlier) {
-    const auto H = homography_of(window, result.cameras[frame_in_window], on.plane);
     for (int track = 0; track < window.track_count(); ++track) {
       if (!inlier[frame_in_window][track]) continue;
-      const Eigen::Vector2d predicted =
-          distort(inspection.recording->camera, transfer(H, window.points_px[0].col(track)));
+      const auto predicted = predicted_px(inspection, frame_in_window, track, on.plane);
       const Eigen::Vector2d observed = inspection.tracks->raw_px[frame_in_window].col(track);
-      if (predicted.allFinite() && observed.allFinite())
-        residuals.push_back({track, on.number, observed, predicted});
+      if (predicted && observed.allFinite())
+        residuals.push_back({track, on.number, observed, *predicted});
     }
   };
   add({window.leader, result.plane}, window.inlier);
@@ -217,8 +228,7 @@ TrackLife track_life(const Inspection& inspection, int column) {
     if (point.track == column) life.depth = point.position.z();
   const Window& window = *inspection.window;
   if (on.number != window.leader) {
-    const Eigen::Vector2d first_px = window.points_px[0].col(column);
-    const auto point = intersect(*on.plane, Pose{}, window.K.inverse() * first_px.homogeneous());
+    const auto point = point_on_plane(inspection, 0, tracks.raw_px[0].col(column), *on.plane);
     life.depth = point ? std::optional(point->z()) : std::nullopt;
   }
   life.verdict = verdict_of(inspection, life);

@@ -34,6 +34,15 @@ std::vector<MapPoint> lift_to_plane(const Window& window,
   return points;
 }
 
+PlaneMotion motion_of(const Initialization& result) {
+  PlaneMotion motion = motion_of(result.plane, result.cameras);
+  for (std::size_t k = 1; k < result.planes.size(); ++k) {
+    const auto& [normal, distance] = result.planes[k].plane;
+    motion.others.push_back({result.planes[k].number, result.plane.distance * normal / distance});
+  }
+  return motion;
+}
+
 Initialization with_map_points(const Window& window, Initialization result) {
   result = trusted(window, std::move(result));
   if (!result.ok) return result;

@@ -17,6 +17,9 @@ std::vector<MapPoint> lift_to_plane(const Window& window,
                                     const Plane& plane,
                                     std::span<const Pose> cameras);
 
+/// Returns the motion over all planes of a result, the main plane first.
+PlaneMotion motion_of(const Initialization& result);
+
 /// Adds map points and RMS error to a result over a plane; a failure if it is not to be trusted.
 Initialization with_map_points(const Window& window, Initialization result);
 

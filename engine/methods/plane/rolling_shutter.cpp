@@ -6,6 +6,7 @@
 #include "engine/geometry/pose.h"
 #include "engine/geometry/statistics.h"
 #include "engine/methods/plane/plane_kernel.h"
+#include "engine/methods/plane/plane_result.h"
 
 #include <cmath>
 #include <optional>
@@ -81,6 +82,10 @@ std::vector<Eigen::Matrix2Xd> corrected_px(const Window& window,
   return points_px;
 }
 
+RotationModel rotations_of(const Window& window, const Initialization& result) {
+  return result.uncertainty ? result.uncertainty->rotations : window.rotations;
+}
+
 }  // namespace
 
 Window without_rolling_shutter(const Window& window,
@@ -103,6 +108,25 @@ Window without_rolling_shutter(const Window& window,
                                RotationModel rotations,
                                const RowDelayPrior& delay) {
   return without_rolling_shutter(window, motion, velocities_of(window, motion, rotations), delay);
+}
+
+Window as_seen_at_time_stamps(const Window& window, const Initialization& result) {
+  if (!result.ok || !result.row_delay_s) return window;
+  return without_rolling_shutter(
+      window, motion_of(result), rotations_of(window, result), {*result.row_delay_s});
+}
+
+std::vector<RowMotion> row_motions(const Window& window, const Initialization& result) {
+  std::vector<RowMotion> motions;
+  for (const Velocity& one :
+       velocities_of(window, motion_of(result), rotations_of(window, result))) {
+    const Eigen::Matrix3d R_cw = result.cameras[motions.size()].R_wc.transpose();
+    motions.push_back({one.rotation_rad_s,
+                       one.rotation_rad_s2,
+                       -result.plane.distance * R_cw * one.tau_s,
+                       -result.plane.distance * R_cw * one.tau_s2});
+  }
+  return motions;
 }
 
 RowDelayPrior unknown_row_delay(const Window& window) {

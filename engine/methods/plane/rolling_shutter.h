@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "engine/geometry/rolling_camera.h"
+#include "engine/methods/common/initialization.h"
 #include "engine/methods/plane/plane_motion.h"
 #include "engine/methods/plane/smooth_path.h"
 #include "engine/window/window.h"
@@ -29,6 +31,13 @@ Window without_rolling_shutter(const Window& window,
                                const PlaneMotion& motion,
                                RotationModel rotations,
                                const RowDelayPrior& delay);
+
+/// Returns the window as the cameras of a result see it: its points where they were at the time
+/// stamps by the result's row delay; the window itself if it has none.
+Window as_seen_at_time_stamps(const Window& window, const Initialization& result);
+
+/// Returns the motion of a result's cameras around each frame.
+std::vector<RowMotion> row_motions(const Window& window, const Initialization& result);
 
 /// Returns the velocities of a smooth path through the poses, whose noise is that of the images as
 /// far as `rotations` are unknown.

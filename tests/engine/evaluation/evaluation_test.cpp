@@ -128,5 +128,29 @@ TEST(NoiseEstimate, MatchesSimulatedNoise) {
   EXPECT_NEAR(noise_px(sum_of_squares(errors), 2.0 * errors.size(), 3 * 30 - 1), 0.5, 0.02);
 }
 
+/// Returns a window with two planes: the simulated one, and its tracks moved by `moved_px`.
+Window with_moved_plane(const Simulation& s, double moved_px) {
+  Window window = s.window;
+  const int count = window.track_count();
+  window.planes.resize(2);
+  for (int j = 0; j < count; ++j) window.planes[j % 2].tracks.push_back(j);
+  for (int i = 1; i < window.frame_count(); ++i)
+    for (const int j : window.planes[0].tracks) window.points_px[i](0, j) += moved_px;
+  return window;
+}
+
+TEST(PlaneOfTruth, IsTheOneWhoseTracksAgreeWithIt) {
+  const Simulation s = simulate({.motion = Motion::wander, .noise_px = 0.5});
+  EXPECT_EQ(plane_of_truth(s.window, true_window(s)), 0);
+  EXPECT_EQ(plane_of_truth(with_moved_plane(s, 0), true_window(s)), 0);
+  EXPECT_EQ(plane_of_truth(with_moved_plane(s, 20), true_window(s)), 1);
+  Window alone = with_moved_plane(s, 20);
+  alone.planes.pop_back();
+  EXPECT_EQ(plane_of_truth(alone, true_window(s)), std::nullopt);
+  WindowTruth none = true_window(s);
+  none.plane.reset();
+  EXPECT_EQ(plane_of_truth(alone, none), 0);
+}
+
 }  // namespace
 }  // namespace gpo::test

@@ -107,6 +107,27 @@ TEST(PlyExport, HasAllPlanesWithTrackColorNormalAndResidual) {
   EXPECT_THAT(of_run, HasSubstr("property double z\nproperty int track\nproperty uchar red\n"));
 }
 
+TEST(ExportScene, GivesEachTrackOfABundleAdjustmentOnePoint) {
+  Inspection room = exported_room(kRoomLens);
+  Initialization result = *room.initialization;
+  for (const int j : room.window->planes[1].tracks) result.points.push_back({j, {0.5, 0, 2}});
+  result.points.push_back({0, {0, 0, 1.5}});  // the outlier
+  room.initialization = std::make_shared<const Initialization>(result);
+  const ExportScene scene = export_scene(room, {});
+  ASSERT_EQ(scene.points.size(), result.points.size());
+  for (const ScenePoint& point : scene.points) {
+    if (point.track == 0) {
+      EXPECT_FALSE(point.plane);
+      EXPECT_EQ(std::ssize(point.frames), room.window->frame_count());
+      EXPECT_GT(point.rms_px, 1);
+    } else if (point.plane == 1) {
+      EXPECT_EQ(point.position, Eigen::Vector3d(0.5, 0, 2)) << "where the method has it";
+    }
+  }
+  ExportNotes notes;
+  EXPECT_THAT(ply_text(scene, notes), HasSubstr(" 0.000000000 0.000000000 0.000000000 0 "));
+}
+
 TEST(RectifiedImage, ShowsTheFloorAsItIs) {
   const Inspection room = exported_room(kRoomLens);
   const ExportScene scene = export_scene(room, {});

@@ -266,6 +266,7 @@ void draw_true_cube(const ImageCanvas& canvas, const CubeImage& cube) {
 }
 
 void draw_model(const ImageCanvas& canvas,
+                const RollingCamera& camera,
                 const Pose& pose,
                 const SolidModel& model,
                 const std::vector<Vector3d>& points_w) {
@@ -275,7 +276,7 @@ void draw_model(const ImageCanvas& canvas,
   for (const Vector3d& point : points_w) {
     points_c.push_back(to_camera(pose, point));
     const bool in_front = points_c.back().z() > 0;
-    screen.push_back(in_front ? to_screen(canvas.mapping, project(canvas.camera, points_c.back()))
+    screen.push_back(in_front ? to_screen(canvas.mapping, project(camera, points_c.back()))
                               : Vector2d::Constant(std::numeric_limits<double>::quiet_NaN()));
   }
   std::vector<DepthAndTriangle> far_to_near;

@@ -66,8 +66,11 @@ bool is_near_image(const Camera& camera, const Vector2d& raw_px) {
 }
 
 /// Projects points along a segment. Returns whether all of it can be projected near the image.
-bool project_segment(
-    const Camera& camera, const Vector3d& a_c, const Vector3d& b_c, double near, Outline& longest) {
+bool project_segment(const RollingCamera& camera,
+                     const Vector3d& a_c,
+                     const Vector3d& b_c,
+                     double near,
+                     Outline& longest) {
   Outline run;
   longest.clear();
   bool whole = true;
@@ -75,7 +78,7 @@ bool project_segment(
     const double s = static_cast<double>(i) / kPiecesPerEdge;
     const Vector3d at_c = (1 - s) * a_c + s * b_c;
     const Vector2d raw_px = project(camera, at_c);
-    const bool drawn = is_near_image(camera, raw_px);
+    const bool drawn = is_near_image(camera.camera, raw_px);
     whole = whole && drawn && at_c.z() >= near;
     drawn ? run.push_back(raw_px) : run.clear();
     if (run.size() > longest.size()) longest = run;
@@ -85,10 +88,10 @@ bool project_segment(
 
 /// Returns the longest visible part of a segment, cut at the image's border only if a part of it is
 /// behind the camera, beyond the lens or far from the image.
-Outline segment_in_image(const Camera& camera, Vector3d a_c, Vector3d b_c, double near) {
+Outline segment_in_image(const RollingCamera& camera, Vector3d a_c, Vector3d b_c, double near) {
   Outline line;
   if (project_segment(camera, a_c, b_c, near, line)) return line;
-  for (const auto& [n, by] : half_spaces_of_view(camera, near)) {
+  for (const auto& [n, by] : half_spaces_of_view(camera.camera, near)) {
     const double at_a = n.dot(a_c) - by, at_b = n.dot(b_c) - by;
     if (at_a < 0 && at_b < 0) return {};
     if (at_a < 0) a_c += at_a / (at_a - at_b) * (b_c - a_c);
@@ -99,7 +102,7 @@ Outline segment_in_image(const Camera& camera, Vector3d a_c, Vector3d b_c, doubl
 }
 
 /// Projects the sides of a polygon. Returns whether all of it can be projected.
-bool project_sides(const Camera& camera,
+bool project_sides(const RollingCamera& camera,
                    const std::vector<FaceCorner>& polygon,
                    double near,
                    CubeFace& face) {
@@ -112,7 +115,7 @@ bool project_sides(const Camera& camera,
       const double s = static_cast<double>(k) / kPiecesPerEdge;
       const Vector3d at_c = (1 - s) * a.at_c + s * b.at_c;
       const Vector2d raw_px = project(camera, at_c);
-      const bool drawn = is_near_image(camera, raw_px);
+      const bool drawn = is_near_image(camera.camera, raw_px);
       whole = whole && at_c.z() > near && drawn;
       if (!drawn) continue;
       face.raw_px.push_back(raw_px);
@@ -124,7 +127,7 @@ bool project_sides(const Camera& camera,
 
 /// Cuts the face at the camera and at the image's border only if a part of it is behind or beyond
 /// the lens.
-CubeFace face_in_image(const Camera& camera,
+CubeFace face_in_image(const RollingCamera& camera,
                        const CubeCorners& corners_c,
                        const std::array<int, 4>& face,
                        double near) {
@@ -137,7 +140,8 @@ CubeFace face_in_image(const Camera& camera,
   }
   CubeFace result{face, face == kCubeFaces[0], center.dot(center - middle) < 0, {}, {}};
   if (project_sides(camera, polygon, near, result)) return result;
-  for (const auto& [n, by] : half_spaces_of_view(camera, near)) polygon = cut(polygon, n, by);
+  for (const auto& [n, by] : half_spaces_of_view(camera.camera, near))
+    polygon = cut(polygon, n, by);
   project_sides(camera, polygon, near, result);
   if (result.raw_px.size() < 3) result.raw_px.clear();
   return result;
@@ -193,7 +197,7 @@ bool hides(const Inspection& inspection,
            const Plane& plane,
            const std::vector<Triangle>& triangles,
            const CubeCorners& cube_w) {
-  const Camera& camera = inspection.recording->camera;
+  const RollingCamera camera = rolling_camera(inspection, frame);
   const Pose& pose = inspection.initialization->cameras[frame];
   constexpr double kBehind = 1.02;  // ratio of distances: a cube on the plane's edge is not hidden
   constexpr int kSteps = 6, kPoints = kSteps + 1;  // along an edge
@@ -217,7 +221,9 @@ bool hides(const Inspection& inspection,
 
 }  // namespace
 
-CubeImage cube_in_image(const Camera& camera, const Pose& pose, const CubeCorners& corners_w) {
+CubeImage cube_in_image(const RollingCamera& camera,
+                        const Pose& pose,
+                        const CubeCorners& corners_w) {
   CubeCorners corners_c;
   for (int i = 0; i < 8; ++i) corners_c[i] = to_camera(pose, corners_w[i]);
   const double near = kNear * (corners_c[1] - corners_c[0]).norm();
@@ -240,7 +246,7 @@ CubeImage cube_on(const Inspection& inspection,
                   int frame,
                   const CubeAnchor& anchor,
                   CubeSize size) {
-  return cube_in_image(inspection.recording->camera,
+  return cube_in_image(rolling_camera(inspection, frame),
                        inspection.initialization->cameras[frame],
                        cube_corners(anchor, size.side, size.height_sides));
 }
@@ -276,7 +282,7 @@ std::optional<CubeImage> true_cube(const Inspection& inspection, int frame, Cube
       !inspection.truth->cameras[frame])
     return std::nullopt;
   const double true_side = size.side * inspection.true_cube->unit / inspection.cube->unit;
-  return cube_in_image(inspection.recording->camera,
+  return cube_in_image(true_rolling_camera(inspection, frame),
                        *inspection.truth->cameras[frame],
                        cube_corners(*inspection.true_cube, true_side, size.height_sides));
 }
@@ -300,6 +306,7 @@ Outlines contact_shadow(const Inspection& inspection,
   constexpr int kRings = 16, kPoints = 48;
   constexpr double kReach = 0.35;  // [sides]
   const auto base = cube_corners(anchor, side);
+  const RollingCamera camera = rolling_camera(inspection, frame);
   const Pose& pose = inspection.initialization->cameras[frame];
   Outlines rings;
   for (int ring = kRings; ring > 0; --ring) {
@@ -313,7 +320,7 @@ Outlines contact_shadow(const Inspection& inspection,
       const Vector3d point_c =
           to_camera(pose, corner + reach * (x * anchor.axes.col(0) + y * anchor.axes.col(1)));
       if (point_c.z() < kNear * side) return {};
-      outline.push_back(project(inspection.recording->camera, point_c));
+      outline.push_back(project(camera, point_c));
       if (!outline.back().allFinite()) return {};
     }
     rings.push_back(std::move(outline));
@@ -321,7 +328,9 @@ Outlines contact_shadow(const Inspection& inspection,
   return rings;
 }
 
-Outlines horizon_in_image(const Camera& camera, const Pose& pose, const Vector3d& up_w) {
+Outlines horizon_in_image(RollingCamera camera, const Pose& pose, const Vector3d& up_w) {
+  camera.motion.translation_s.setZero();  // it is far away
+  camera.motion.translation_s2.setZero();
   constexpr int kDirections = 720;
   constexpr double kLeastDepth = 0.05;
   const Vector3d up_c = (pose.R_wc.transpose() * up_w).normalized();
@@ -331,7 +340,7 @@ Outlines horizon_in_image(const Camera& camera, const Pose& pose, const Vector3d
   ahead.normalize();
   const Vector3d side = ahead.cross(up_c);
   const Eigen::AlignedBox2d inside(Vector2d(-0.5, -0.5),
-                                   Vector2d(camera.width - 0.5, camera.height - 0.5));
+                                   Vector2d(camera.camera.width - 0.5, camera.camera.height - 0.5));
   Outlines pieces(1);
   for (int i = 0; i <= kDirections; ++i) {
     const double angle = std::numbers::pi * (2.0 * i / kDirections - 1);

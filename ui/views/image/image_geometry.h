@@ -3,6 +3,7 @@
 #pragma once
 
 #include "engine/geometry/pose.h"
+#include "engine/geometry/rolling_camera.h"
 #include "ui/views/model/solid_model.h"
 #include "ui/views/overlay/overlay.h"
 
@@ -44,7 +45,9 @@ struct CubeImage {
 };
 
 /// Projects a cube (`cube_corners`); its edges are bent by the lens and clipped at the camera.
-CubeImage cube_in_image(const Camera& camera, const Pose& pose, const CubeCorners& corners_w);
+CubeImage cube_in_image(const RollingCamera& camera,
+                        const Pose& pose,
+                        const CubeCorners& corners_w);
 
 struct CubeSize {
   double side;              ///< [unit of the estimate]
@@ -80,7 +83,7 @@ Outlines contact_shadow(const Inspection& inspection,
                         double side);
 
 /// Returns the pieces of the horizon in the image, bent by the lens. `up_w` has any length.
-Outlines horizon_in_image(const Camera& camera, const Pose& pose, const Vector3d& up_w);
+Outlines horizon_in_image(RollingCamera camera, const Pose& pose, const Vector3d& up_w);
 
 using Triangle = std::array<Vector2d, 3>;
 
@@ -136,6 +139,7 @@ void draw_true_cube(const ImageCanvas& canvas, const CubeImage& cube);
 
 /// Draws the model's triangles in front of the camera from far to near, its points at `points_w`.
 void draw_model(const ImageCanvas& canvas,
+                const RollingCamera& camera,
                 const Pose& pose,
                 const SolidModel& model,
                 const std::vector<Vector3d>& points_w);

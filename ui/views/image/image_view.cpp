@@ -31,6 +31,7 @@ struct Canvas : ImageCanvas {
     return look;
   }
   const Pose& pose() const { return inspection.initialization->cameras[frame]; }
+  RollingCamera rolling() const { return rolling_camera(inspection, frame); }
   CubeSize cube_size() const {
     return {cube_side(inspection, options.cube_side), options.cube_height_sides};
   }
@@ -112,7 +113,7 @@ void draw_standing(const Canvas& canvas, const CubeImage& cube, const CubeAnchor
             model != nullptr);
   if (model != nullptr) {
     const auto corners = cube_corners(anchor, side);
-    draw_model(canvas, canvas.pose(), *model, placed_on(*model, corners));
+    draw_model(canvas, canvas.rolling(), canvas.pose(), *model, placed_on(*model, corners));
   }
   draw_occluders(canvas, cube, anchor);
 }
@@ -142,7 +143,7 @@ void draw_cubes(const Canvas& canvas) {
 Outlines horizon(const Canvas& canvas) {
   const Inspection& inspection = canvas.inspection;
   if (!inspection.inertial || !inspection.inertial->ok || !canvas.options.show.gravity) return {};
-  return horizon_in_image(canvas.camera, canvas.pose(), -inspection.inertial->gravity_m_s2);
+  return horizon_in_image(canvas.rolling(), canvas.pose(), -inspection.inertial->gravity_m_s2);
 }
 
 LegendRows track_rows(const Canvas& canvas) {

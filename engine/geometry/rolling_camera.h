@@ -1,0 +1,57 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "engine/geometry/camera.h"
+#include "engine/geometry/plane.h"
+#include "engine/geometry/pose.h"
+
+#include <optional>
+#include <vector>
+
+#include <Eigen/Core>
+
+namespace gpo {
+
+/// Motion of a camera around the time stamp of a frame, to second order, in its axes there:
+/// exp(t w + t^2 / 2 w'), t v + t^2 / 2 a.
+struct RowMotion {
+  Eigen::Vector3d rotation_rad_s = Eigen::Vector3d::Zero();
+  Eigen::Vector3d rotation_rad_s2 = Eigen::Vector3d::Zero();
+  Eigen::Vector3d translation_s = Eigen::Vector3d::Zero();   ///< [unit of the world / s]
+  Eigen::Vector3d translation_s2 = Eigen::Vector3d::Zero();  ///< [unit of the world / s^2]
+};
+
+/// A camera that moves while its rows are read. The time stamp is that of the middle row.
+struct RollingCamera {
+  /// Makes a global shutter. Keeps a reference.
+  RollingCamera(const Camera& of) : camera(of) {}  // NOLINT(google-explicit-constructor)
+
+  const Camera& camera;
+  double row_delay_s = 0;  ///< from one row to the next; 0: all rows at once
+  RowMotion motion = {};
+};
+
+/// Returns the pose, in the camera's axes at the time stamp, from which the row of a pixel was
+/// read. Rows beyond the image are read with its first or last one.
+Pose pose_at_row(const RollingCamera& camera, const Eigen::Vector2d& raw_px);
+
+/// Projects a point, given in the camera's axes at the time stamp, to the pixel whose row is read
+/// when the point is there [raw px]. NaN as for `project(Camera, ...)`.
+Eigen::Vector2d project(const RollingCamera& camera, const Eigen::Vector3d& point_c);
+
+/// Returns the point of a plane that a pixel shows, in the world; nullopt if its ray misses the
+/// plane. `pose`: at the time stamp.
+std::optional<Eigen::Vector3d> intersect(const Plane& plane_w,
+                                         const Pose& pose,
+                                         const RollingCamera& camera,
+                                         const Eigen::Vector2d& raw_px);
+
+/// Returns the pixels [raw px] at which the points of a plane that pixels show would have been seen
+/// at the time stamp. Pixels whose rays miss the plane stay.
+std::vector<Eigen::Vector2d> at_time_stamp(std::vector<Eigen::Vector2d> raw_px,
+                                           const Plane& plane_w,
+                                           const Pose& pose,
+                                           const RollingCamera& camera);
+
+}  // namespace gpo
