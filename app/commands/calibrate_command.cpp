@@ -128,6 +128,13 @@ int report_failure(const std::string& reason) {
   return kFailed;
 }
 
+/// The recording's camera.yaml may be calibrated again, but no other file of it is overwritten.
+void check_not_of(const Recording& recording, const CalibrateArguments& arguments) {
+  check_not_overwritten(recording, {{"--figure", arguments.figure}});
+  if (arguments.output.filename() != "camera.yaml")
+    check_not_overwritten(recording, {{"--output", arguments.output}});
+}
+
 template <class Calibration>
 int write_camera(const CalibrateArguments& arguments, const Calibration& calibration) {
   fmt::print("{}", to_text(calibration));
@@ -140,6 +147,7 @@ int calibrate_by_plane(const CalibrateArguments& arguments, const fs::path& reco
   const auto opened = open_recording(recording, {.tracks = {}, .cache_bytes = kCacheBytes});
   if (!opened->images)
     throw InputError(recording.string() + ": has no images, expected a video or images");
+  check_not_of(*opened, arguments);
   const PlaneLens calibration = self_calibrate(*opened);
   if (!calibration.ok) return report_failure(calibration.reason);
   return write_camera(arguments, calibration);
@@ -164,6 +172,7 @@ int calibrate_by_board(const CalibrateArguments& arguments, const fs::path& reco
   const auto images = open_images(recording, kCacheBytes, arguments.topics);
   std::vector<std::int64_t> times_ns;
   if (const auto opened = opened_or_null(arguments, recording)) {
+    check_not_of(*opened, arguments);
     times_ns = opened->timestamps_ns;
     options.readout = opened->camera.readout;
     options.readout_direction = opened->camera.readout_direction;
@@ -191,11 +200,20 @@ void write_rate_figure(const fs::path& file,
   write_image(file, draw_figure(figure, default_figure_size(figure)));
 }
 
+/// Returns the camera in the gyroscope's axes [m]; zero if it is unknown.
+Eigen::Vector3d lever_arm_m(const Recording& recording) {
+  const auto& T = recording.T_body_camera;
+  if (!T) return Eigen::Vector3d::Zero();
+  return recording.gyroscope->R_gyro_camera * T->R_wc.transpose() * T->p_wc;
+}
+
 int calibrate_gyroscope(const CalibrateArguments& arguments, const fs::path& path) {
+  if (arguments.coefficients != 4) throw InputError("--coefficients: not used with --gyroscope");
   InspectArguments opened;
   opened.recording = path;
   const auto recording = open(opened);
   if (!recording->gyroscope) throw InputError(recording->name + " has no gyroscope");
+  check_not_of(*recording, arguments);
   constexpr int kWindows = 80;
   ProgressBar bar("rotations from images");
   const auto windows = rotations_over_recording(recording, kWindows, std::ref(bar), current_stop());
@@ -207,11 +225,15 @@ int calibrate_gyroscope(const CalibrateArguments& arguments, const fs::path& pat
     if (arguments.figure) write_rate_figure(*arguments.figure, windows, *recording, fit);
   }
   if (!fit.ok) return report_failure(fit.reason);
-  write_output(arguments.output, to_yaml(fit, recording->camera, recording->name));
+  write_output(arguments.output,
+               to_yaml(fit, recording->camera, recording->name, lever_arm_m(*recording)));
   return kDone;
 }
 
 int calibrate_as_requested(const CalibrateArguments& arguments) {
+  if (arguments.figure && arguments.figure->extension() != ".png")
+    throw InputError(fmt::format("--figure: '{}', expected a file name that ends in .png",
+                                 arguments.figure->string()));
   check_outputs({{"--output", arguments.output}, {"--figure", arguments.figure}},
                 {{"recording", arguments.recording}});
   const fs::path recording = resolve_recordings({arguments.recording}).front();

@@ -114,6 +114,9 @@ GivenRecording given_recording(const InspectArguments& arguments);
 /// Opens the recording and prints its notes on standard error. Throws InputError.
 std::shared_ptr<const Recording> open(const InspectArguments& arguments);
 
+/// Throws InputError if an output is a file that the recording was read from.
+void check_not_overwritten(const Recording& recording, const std::vector<NamedFile>& outputs);
+
 /// Prints the given settings that had no effect, with the reason, one per line on standard error.
 void report_unused(std::span<const std::string> given,
                    std::span<const std::shared_ptr<const Inspection>> inspections,

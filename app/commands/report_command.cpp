@@ -104,6 +104,7 @@ int write_report(const ReportArguments& arguments, const MethodTable& methods) {
     one.recording = path;
     request.recordings.push_back(
         {.path = path, .recording = open(one), .topics = one.topics, .tracks = one.tracks});
+    check_not_overwritten(*request.recordings.back().recording, {{"--output", arguments.output}});
   }
   const WrittenReport report = make_report(request, current_stop());
   const auto configurations = reported_configurations(request);

@@ -73,6 +73,7 @@ int run_scan(const RunArguments& run) {
   if (std::ranges::find(arguments.given, "start") != arguments.given.end())
     fmt::print(stderr, "--start is not used. A scan covers the whole recording\n");
   const auto recording = open(arguments);
+  check_not_overwritten(*recording, {{"--scan", run.scan}});
   const int frames = arguments.settings.frames;
   const int step = run.scan_step.value_or(scan_step(recording->frame_count(), frames));
   const auto starts = starts_to_scan(recording->frame_count(), frames, step);
@@ -162,6 +163,7 @@ int run_once(const RunArguments& run) {
   check_export_folders(run);
   check_outputs(outputs, {{"--tracks", arguments.tracks}, {"recording", arguments.recording}});
   const auto recording = open(arguments);
+  check_not_overwritten(*recording, outputs);
   const Settings settings =
       with_window_within(arguments.settings, arguments.given, recording->frame_count());
   const auto inspection = Inspector(recording).inspect(settings, current_stop());

@@ -78,8 +78,9 @@ void report_unused_by_view(const ViewRequest& request) {
     fmt::print(stderr, "--frame is not used. The view curves shows no frame\n");
 }
 
-DrawnView draw(const InspectArguments& arguments, ViewRequest request) {
+DrawnView draw(const InspectArguments& arguments, ViewRequest request, const NamedFile& output) {
   const auto recording = open(arguments);
+  check_not_overwritten(*recording, {output});
   request.window = with_window_within(request.window, arguments.given, recording->frame_count());
   DrawnView drawn = draw_view(recording, request, current_stop());
   const bool compares = request.view == "compare" || request.view == "curves";
@@ -185,7 +186,9 @@ int draw_one_view(const SnapshotArguments& arguments, const ViewRequest& request
   check(arguments);
   const cv::Mat baseline = arguments.baseline ? read_baseline(*arguments.baseline) : cv::Mat();
   report_unused_by_view(request);
-  const DrawnView drawn = arguments.live ? draw_live(arguments) : draw(arguments.inspect, request);
+  const DrawnView drawn = arguments.live
+                              ? draw_live(arguments)
+                              : draw(arguments.inspect, request, {"--output", arguments.output});
   make_folder(folder_of(fs::absolute(arguments.output)));
   write_image(arguments.output, drawn.image);
   if (!drawn.ok) return kFailed;

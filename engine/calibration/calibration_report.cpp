@@ -214,7 +214,10 @@ std::string to_text(const PlaneLens& lens) {
          warning_lines("warning     ", warnings_of(lens));
 }
 
-std::string to_yaml(const GyroscopeFit& fit, const Camera& camera, const std::string& source) {
+std::string to_yaml(const GyroscopeFit& fit,
+                    const Camera& camera,
+                    const std::string& source,
+                    const Eigen::Vector3d& lever_arm_m) {
   std::string text = fmt::format(
       "# gyroscope on its camera, from {} windows of {}\n"
       "# rotation +- {}, clock +- {:.2f} ms\n"
@@ -225,13 +228,18 @@ std::string to_yaml(const GyroscopeFit& fit, const Camera& camera, const std::st
       1e3 * fit.time_offset_sigma_s,
       vector_text(fit.bias_rad_s, 5),
       vector_text(fit.bias_sigma_rad_s, 5));
+  text += lever_arm_m.isZero() ? "# position of the camera unknown: 0\n"
+                               : "# position of the camera from the recording\n";
   if (fit.drift)
     text += fmt::format("# the clocks drift by {:.1f} +- {:.1f} us/s, not included in this file\n",
                         1e6 * *fit.drift,
                         1e6 * fit.drift_sigma);
   text += camera_yaml(camera, {.coefficient_digits = 8, .sigma_digits = 4}) + "T_BS: [";
-  for (const auto& r : fit.R_gyro_camera.rowwise())
-    text += fmt::format("[{:.9f}, {:.9f}, {:.9f}, 0], ", r.x(), r.y(), r.z());
+  for (int row = 0; row < 3; ++row) {
+    const Eigen::RowVector3d r = fit.R_gyro_camera.row(row);
+    text +=
+        fmt::format("[{:.9f}, {:.9f}, {:.9f}, {:.6g}], ", r.x(), r.y(), r.z(), lever_arm_m[row]);
+  }
   return text + fmt::format("[0, 0, 0, 1]]\ntimeshift_cam_imu: {:.6f}  # s\n", fit.time_offset_s);
 }
 

@@ -13,8 +13,12 @@ namespace gpo {
 /// `source` names the recording in a comment.
 std::string to_yaml(const CameraCalibration& calibration, const std::string& source);
 std::string to_yaml(const PlaneLens& lens, const std::string& source);
-/// The same of an unchanged camera, with the fitted `T_BS` and `timeshift_cam_imu`.
-std::string to_yaml(const GyroscopeFit& fit, const Camera& camera, const std::string& source);
+/// The same of an unchanged camera, with the fitted `T_BS` and `timeshift_cam_imu`. `lever_arm_m`:
+/// the camera in the gyroscope's axes, zero if unknown.
+std::string to_yaml(const GyroscopeFit& fit,
+                    const Camera& camera,
+                    const std::string& source,
+                    const Eigen::Vector3d& lever_arm_m);
 
 /// Formats a table for people, one parameter or fact a line.
 std::string to_text(const CameraCalibration& calibration);

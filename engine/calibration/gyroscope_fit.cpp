@@ -224,8 +224,9 @@ std::optional<Refined> refine(const std::vector<Observed>& windows, State state,
   return result;
 }
 
-/// Sandwich over windows, corrected for their small number.
-Eigen::MatrixXd covariance_of(const Refined& fit, int unknowns) {
+/// Returns the larger one of the variances by the sandwich over windows, corrected for their small
+/// number, and of those by the least squares.
+Eigen::VectorXd variances_of(const Refined& fit, int unknowns) {
   Eigen::MatrixXd A = Eigen::MatrixXd::Zero(unknowns, unknowns);
   for (const WindowNormals& w : fit.normals) A += w.JtJ;
   const Eigen::MatrixXd inverse = inverse_of_symmetric(A);
@@ -237,9 +238,9 @@ Eigen::MatrixXd covariance_of(const Refined& fit, int unknowns) {
   }
   const auto n = static_cast<double>(fit.normals.size());
   covariance *= (n - 1) / n;
+  covariance *= (n - 1) / std::max(1.0, n - 3);  // the variance of Student's t with n - 1 degrees
   const double sigma = robust_sigma(fit.errors);
-  if (covariance.trace() < sigma * sigma * inverse.trace()) covariance = sigma * sigma * inverse;
-  return covariance;
+  return covariance.diagonal().cwiseMax(sigma * sigma * inverse.diagonal());
 }
 
 double rms_deg(const Errors& errors) {
@@ -332,8 +333,7 @@ GyroscopeFit fit_gyroscope(const std::vector<ImageRotations>& windows, const Gyr
     if (observed.size() >= 3) refined = refine(observed, refined->state, unknowns);
   }
   if (!refined || observed.size() < 3) return failed_fit("the rotations of the windows disagree");
-  const Eigen::VectorXd sigmas =
-      covariance_of(*refined, unknowns).diagonal().cwiseMax(0).cwiseSqrt();
+  const Eigen::VectorXd sigmas = variances_of(*refined, unknowns).cwiseMax(0).cwiseSqrt();
   GyroscopeFit fit;
   fit.R_gyro_camera = refined->state.R_gyro_camera;
   fit.rotation_sigma_deg = sigmas.head<3>() * degrees(1);

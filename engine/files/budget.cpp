@@ -79,6 +79,7 @@ struct Spent {
   double (*clock)() = nullptr;
   double end_s = 0;
   unsigned checks = 0;
+  std::set<fs::path> files = {};
 };
 
 thread_local Spent spent;
@@ -140,6 +141,12 @@ Budget::Budget(const fs::path& input, double (*seconds)()) {
 Budget::~Budget() {
   --spent.budgets;
   spent.input = outer_input_;
+}
+
+std::set<fs::path> Budget::files() { return spent.files; }
+
+void note_read(const fs::path& file) {
+  if (spent.budgets > 0) spent.files.insert(file);
 }
 
 void spend_items(const fs::path& file, std::uint64_t count) {

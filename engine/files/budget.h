@@ -7,6 +7,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <set>
 #include <string_view>
 
 namespace gpo {
@@ -60,11 +61,17 @@ class Budget {
   Budget(const Budget&) = delete;
   Budget& operator=(const Budget&) = delete;
 
+  /// Returns the files that `read_file` has read in this thread since the outermost budget began.
+  static std::set<fs::path> files();
+
  private:
   fs::path outer_input_;
   StopWatch watch_;
   std::optional<StopScope> scope_;  ///< set in the outermost budget
 };
+
+/// Adds to `Budget::files`.
+void note_read(const fs::path& file);
 
 // Each adds to the thread's budget, if there is one. Throws InputError past the limit.
 void spend_items(const fs::path& file, std::uint64_t count = 1);

@@ -85,6 +85,7 @@ std::string read_file(const fs::path& file, std::uint64_t most_bytes) {
       refuse_size(file, fmt::format("more than {} MiB", most_bytes >> 20), "a smaller file");
   }
   if (stream.bad()) fail_at(file, "a read error", "a file that can be read");
+  note_read(file);
   return content;
 }
 

@@ -13,6 +13,7 @@
 
 #include <map>
 #include <memory>
+#include <set>
 
 namespace gpo {
 
@@ -73,6 +74,7 @@ struct Recording {
   std::optional<Board> board;
   std::vector<TrackObservation> tracks;  ///< sorted by frame, then track; empty: use the tracker
   std::vector<std::string> notes;        ///< "no gyroscope: ...", each shown once to the user
+  std::set<fs::path> read_files;         ///< from which all but the images was read
   std::vector<FoundFile> files;          ///< reported by the readers of layouts; see `found_files`
   fs::path cache_folder;                 ///< for detections in images; empty: do not cache
 

@@ -187,6 +187,7 @@ std::shared_ptr<const Recording> open_recording(const fs::path& path, const Open
   set_bias_from_stationary_interval(recording);
   add_notes(recording);
   recording.quarter_turns = quarter_turns_of_exif(recording.image_files);
+  recording.read_files = Budget::files();
   if (recording.images) recording.images->bgr(0);  // detects a wrong size or format
   return std::make_shared<const Recording>(std::move(recording));
 }

@@ -247,8 +247,17 @@ TEST(GyroscopeFit, CallsRotationsUndeterminedBeyondARightAngle) {
   fit.rotation_sigma_deg = {0.5, 120, 2};
   EXPECT_THAT(to_text(fit, {}), HasSubstr("0.50 undetermined 2.00 deg about the camera's axes\n"));
   EXPECT_THAT(
-      to_yaml(fit, Camera{}, "desk"),
+      to_yaml(fit, Camera{}, "desk", {0.01, -0.02, 0.03}),
       HasSubstr("# rotation +- 0.500 undetermined 2.000 deg about the camera's axes, clock"));
+}
+
+TEST(GyroscopeFit, WritesTheRecordingsCameraPosition) {
+  const GyroscopeFit fit;
+  const std::string known = to_yaml(fit, Camera{}, "desk", {0.01, -0.02, 0.03});
+  EXPECT_THAT(known, HasSubstr("# position of the camera from the recording\n"));
+  EXPECT_THAT(known, HasSubstr("0.000000000, -0.02], [0"));
+  EXPECT_THAT(to_yaml(fit, Camera{}, "desk", Eigen::Vector3d::Zero()),
+              HasSubstr("# position of the camera unknown: 0\n"));
 }
 
 }  // namespace
