@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/base/error.h"
 #include "engine/external_methods/own_method.h"
+#include "engine/files/text_file.h"
 #include "engine/geometry/camera_resection.h"
 #include "engine/geometry/decompositions.h"
 #include "engine/geometry/statistics.h"
@@ -10,6 +11,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <regex>
 
 #include <Eigen/LU>
 #include <fmt/format.h>
@@ -27,9 +29,17 @@ constexpr double kMaxNumber = 1e12;
 /// Distance from a rotation matrix that is accepted as rounding to few digits.
 constexpr double kMaxSkew = 1e-3;
 constexpr double kRounding = 1e-12;
+/// Largest share of points behind the reference camera; more mean a wrong sign or world.
+constexpr double kMostBehind = 0.05;
 
 [[noreturn]] void refuse_answer(const std::string& key, const std::string& expected) {
   throw InputError(fmt::format("{}: expected {}", key, expected));
+}
+
+/// Returns the line with NaN and Infinity, which Python writes and JSON lacks, as strings.
+std::string with_quoted_constants(std::string_view line) {
+  static const std::regex constant(R"(([\[:,] ?)(NaN|-?Infinity))");
+  return std::regex_replace(std::string(line), constant, "$1\"$2\"");
 }
 
 /// Limits the depth so that the parser does not run out of stack.
@@ -42,6 +52,8 @@ Json parsed(std::string_view line) {
   try {
     return Json::parse(line, keep);
   } catch (const Json::parse_error& error) {
+    Json json = Json::parse(with_quoted_constants(line), keep, false);
+    if (!json.is_discarded()) return json;
     throw InputError(fmt::format(
         "invalid JSON from byte {} on: '{}'", error.byte, legible(line.substr(0, 200), 40)));
   } catch (const Json::exception&) {
@@ -63,10 +75,15 @@ void check_keys(const Json& json,
 }
 
 double number(const Json& json, const std::string& key, const std::string& expected) {
+  constexpr std::size_t kMaxText = 40;
+  if (json.is_string())
+    throw InputError(fmt::format(
+        "{}: found '{}', expected {}", key, legible(json.get<std::string>(), kMaxText), expected));
   if (!json.is_number()) refuse_answer(key, expected);
   const auto value = json.get<double>();
-  if (!(std::abs(value) <= kMaxNumber)) refuse_answer(key, expected);
-  return value;
+  if (std::abs(value) <= kMaxNumber) return value;
+  throw InputError(
+      fmt::format("{}: {:g} is too large, expected at most {:g}", key, value, kMaxNumber));
 }
 
 void append_numbers(const Json& json,
@@ -109,8 +126,11 @@ Matrix3d rotation_in(const Json& json, const std::string& where, const char* key
   const std::vector<double> values = numbers(json, where, key, 9);
   const Matrix3d R = Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(values.data());
   const auto rotation = rotation_meant(R, kMaxSkew);
-  if (!rotation) refuse_answer(where + "." + key, "a rotation matrix, row by row");
-  return *rotation;
+  if (rotation) return *rotation;
+  const bool reflection = rotation_meant(-R, kMaxSkew).has_value();
+  refuse_answer(where + "." + key,
+                reflection ? "a rotation matrix, row by row, found a reflection of determinant -1"
+                           : "a rotation matrix, row by row");
 }
 
 int index_in(const Json& json, const std::string& where, const char* key, int count) {
@@ -229,6 +249,51 @@ bool rescale(Answer& answer) {
   return finite && std::isfinite(1 / unit);
 }
 
+/// Returns why an answer contradicts itself or has points behind the camera; nullopt if neither.
+std::optional<std::string> contradiction(const Window& window,
+                                         const Answer& answer,
+                                         std::size_t given_points) {
+  const auto leading = std::ranges::find(answer.planes, window.leader, &PlaneEstimate::number);
+  if (answer.plane && leading != answer.planes.end()) {
+    const Plane &a = *answer.plane, &b = leading->plane;
+    if ((a.normal - b.normal).norm() > kMaxSkew ||
+        std::abs(a.distance - b.distance) > kMaxSkew * std::abs(a.distance))
+      return fmt::format(
+          "the answer has two different leading planes, plane and that of planes "
+          "with the number {}",
+          window.leader);
+  }
+  const std::size_t behind = given_points - answer.points.size();
+  if (static_cast<double>(behind) > kMostBehind * static_cast<double>(given_points))
+    return fmt::format("{} of the answer's {} are behind the reference camera",
+                       behind,
+                       counted(given_points, "point"));
+  return std::nullopt;
+}
+
+/// Returns which camera fits its tracks far worse than the others; nullopt if none does.
+std::optional<std::string> camera_apart(const Window& window, const Initialization& result) {
+  constexpr double kApart = 10;  // times the residual of the others
+  const auto errors_px = reprojection_errors_px(window, result.plane, result.cameras);
+  std::vector<double> medians_px;
+  auto begin = errors_px.begin();
+  for (int i = 1; i < window.frame_count(); ++i) {
+    const auto end = begin + std::ssize(window.inlier_tracks(i));
+    medians_px.push_back(begin == end ? 0 : median({begin, end}));
+    begin = end;
+  }
+  if (medians_px.empty()) return std::nullopt;
+  const auto worst = std::ranges::max_element(medians_px);
+  const double others_px = median(medians_px);
+  if (!(*worst > most_residual_px(window) && *worst > kApart * others_px)) return std::nullopt;
+  return fmt::format(
+      "the camera of frame {} does not fit its tracks: median residual {:.1f} px, but {:.1f} px "
+      "for the other frames",
+      window.start + 1 + (worst - medians_px.begin()),
+      *worst,
+      others_px);
+}
+
 std::vector<PlaneEstimate> planes_of(const Window& window, const Answer& answer) {
   std::vector<PlaneEstimate> planes = answer.planes;
   if (window.planes.empty() || planes.empty()) return {};
@@ -252,6 +317,7 @@ Answer read_answer(std::string_view line, const ExpectedAnswer& expected) {
     if (!json["failed"].is_string()) refuse_answer("failed", "a string");
     constexpr std::size_t kMaxReason = 500;
     answer.failed = legible(json["failed"].get<std::string>(), kMaxReason);
+    if (trimmed(*answer.failed).empty()) answer.failed = "failed without a reason";
     return answer;
   }
   if (!given("cameras")) throw InputError("cameras: is missing, as is failed");
@@ -265,14 +331,19 @@ Answer read_answer(std::string_view line, const ExpectedAnswer& expected) {
   for (std::size_t k = 0; k < answer.planes.size(); ++k)
     check_off_reference(answer.planes[k].plane, answer, fmt::format("planes[{}]", k));
   answer.points = points_in(json, expected.tracks);
-  if (given("milliseconds"))
+  if (given("milliseconds")) {
     answer.milliseconds = number(json["milliseconds"], "milliseconds", "a number");
+    if (*answer.milliseconds < 0)
+      refuse_answer("milliseconds", fmt::format("0 or more, found {:g}", *answer.milliseconds));
+  }
   return answer;
 }
 
 Initialization initialization_of(const Window& window, const Answer& given) {
   if (given.failed) return failed(*given.failed);
   Answer answer = seen_from_reference(given);
+  if (const auto reason = contradiction(window, answer, given.points.size()))
+    return failed(*reason);
   const auto leading = std::ranges::find(answer.planes, window.leader, &PlaneEstimate::number);
   if (!answer.plane && leading != answer.planes.end()) answer.plane = leading->plane;
   const bool over_plane = answer.plane && answer.points.empty();
@@ -295,9 +366,14 @@ Initialization initialization_of(const Window& window, const Answer& given) {
                                 window.start + i));
     result.cameras.push_back(*camera);
   }
+  if (const auto reason = camera_apart(window, result)) return refused(*reason, std::move(result));
   if (over_plane) return with_map_points(window, std::move(result));
   result.points = points;
   std::vector<double> errors_px = reprojection_errors_px(window, result.cameras, result.points);
+  if (!given.points.empty() && !errors_px.empty() && median(errors_px) > most_residual_px(window))
+    return refused(fmt::format("the points do not fit their tracks: median residual {:.1f} px",
+                               median(errors_px)),
+                   std::move(result));
   std::erase_if(errors_px, [](double error) { return !std::isfinite(error); });
   result.rms_px = root_mean_square(errors_px);
   return trusted(window, std::move(result));

@@ -39,15 +39,14 @@ constexpr double kBehindCamera = std::numeric_limits<double>::infinity();
 std::optional<std::string> reason_to_distrust(const Window& window,
                                               const Plane& plane,
                                               std::span<const Pose> cameras) {
-  const double expected_px = homography_error_px(window);
   const double found_px = median(reprojection_errors_px(window, plane, cameras));
-  if (found_px > kDistrustFactor * expected_px + kDistrustPx * pixel_unit(window.K)) {
+  if (found_px > most_residual_px(window)) {
     return fmt::format(
         "no convergence to the plane: median residual {:.1f} px, but {:.1f} px for the "
         "homographies "
         "(wrong minimum, or rotations that do not fit the images)",
         found_px,
-        expected_px);
+        homography_error_px(window));
   }
   const std::vector<int> beyond = beyond_horizon(window, plane);
   if (static_cast<double>(beyond.size()) > kMostBeyond * window.inlier_count(0)) {
@@ -105,22 +104,29 @@ void check_window(const Window& window) {
     throw InputError(fmt::format("window: leader {} is no plane", window.leader));
 }
 
+/// Returns the number of tracks in the reference frame without those that were left out.
+int seen_tracks(const Window& window) {
+  const Eigen::Array<bool, 2, Eigen::Dynamic> seen = window.points_px[0].array().isFinite();
+  return static_cast<int>(seen.colwise().all().count());
+}
+
 }  // namespace
 
 std::optional<std::string> reason_not_to_try(const Window& window) {
   check_window(window);
-  if (window.track_count() < kLeastInliers) {
+  const int tracks = seen_tracks(window);
+  if (tracks < kLeastInliers) {
     return fmt::format(
         "too few tracks: frame {}, the first of the window, has {}, at least {} are needed",
         window.start,
-        window.track_count(),
+        tracks,
         kLeastInliers);
   }
   if (window.inliers == Inliers::planes && window.planes.empty()) {
     return fmt::format(
         "no plane: no set of the {} tracks agrees with one homography per frame; the largest "
         "candidate has {}",
-        window.track_count(),
+        tracks,
         window.largest_refused);
   }
   for (int i = 1; i < window.frame_count(); ++i) {
@@ -228,6 +234,10 @@ std::vector<int> beyond_horizon(const Window& window, const Plane& plane) {
     if (!(plane.normal.dot(ray) < 0)) beyond.push_back(j);
   }
   return beyond;
+}
+
+double most_residual_px(const Window& window) {
+  return kDistrustFactor * homography_error_px(window) + kDistrustPx * pixel_unit(window.K);
 }
 
 Initialization trusted(const Window& window, Initialization result) {

@@ -24,6 +24,9 @@ std::optional<std::string> reason_not_to_try(const Window& window);
 /// Returns the inlier tracks that the plane puts behind the reference camera, ascending.
 std::vector<int> beyond_horizon(const Window& window, const Plane& plane);
 
+/// Returns the largest median residual with which a solution is trusted [px].
+double most_residual_px(const Window& window);
+
 /// Returns the plane and cameras as an `ok` result; a failure if points are behind a camera or the
 /// residuals are far above those of the homographies (wrong minimum or wrong rotations).
 Initialization trusted(const Window& window, Initialization result);

@@ -137,6 +137,42 @@ TEST_F(CommandMethodAnswer, RejectsResultThatDoesNotFitTheTracks) {
   EXPECT_THAT(theirs.reason, testing::StartsWith("mine: "));
 }
 
+/// Returns our result as a user's answer, with all its points.
+Answer same_answer(const Initialization& ours) {
+  return {.cameras = {ours.cameras.begin(), ours.cameras.end()},
+          .plane = ours.plane,
+          .points = ours.points};
+}
+
+TEST_F(CommandMethodAnswer, RejectsPointsThatDoNotFitOrAreBehind) {
+  EXPECT_TRUE(initialization_of(window, same_answer(ours)).ok);
+  Answer scaled = same_answer(ours), behind = same_answer(ours);
+  for (MapPoint& point : scaled.points) point.position *= 1.5;
+  for (MapPoint& point : behind.points) point.position *= -1;
+  EXPECT_THAT(initialization_of(window, scaled).reason,
+              testing::StartsWith("the points do not fit their tracks: median residual "));
+  EXPECT_THAT(initialization_of(window, behind).reason,
+              HasSubstr("points are behind the reference camera"));
+}
+
+TEST_F(CommandMethodAnswer, NamesTheOneCameraThatDoesNotFit) {
+  Answer answer = same_answer(ours);
+  answer.cameras[4]->p_wc.x() += 0.2;
+  const Initialization theirs = initialization_of(window, answer);
+  EXPECT_FALSE(theirs.ok);
+  EXPECT_THAT(theirs.reason,
+              testing::StartsWith("the camera of frame 4 does not fit its tracks: median "));
+  EXPECT_TRUE(theirs.refused);
+}
+
+TEST_F(CommandMethodAnswer, RejectsTwoDifferentLeadingPlanes) {
+  Answer answer = same_answer(ours);
+  answer.planes = {{window.leader, ours.plane}};
+  EXPECT_TRUE(initialization_of(window, answer).ok);
+  answer.planes.front().plane.distance *= 2;
+  EXPECT_THAT(initialization_of(window, answer).reason, HasSubstr("two different leading planes"));
+}
+
 TEST(CommandMethod, ReportsEachFailureInOneLine) {
   EXPECT_EQ(reason_of("read w; echo '{\"failed\": \"too dark\"}'; cat"), "mine: too dark");
   EXPECT_THAT(reason_of("cat"), HasSubstr("mine: answer 1: "));
@@ -297,6 +333,7 @@ TEST(ReadAnswer, AcceptsMissingCameraReasonAloneAndRotationsOfFewDigits) {
   EXPECT_FALSE(read_answer(answer_with("", "null"), kExpected).cameras[1]);
   const Answer failed = read_answer(R"({"failed": "too\ndark"})", kExpected);
   EXPECT_EQ(failed.failed, "too\\ndark") << "one line";
+  EXPECT_EQ(read_answer(R"({"failed": " "})", kExpected).failed, "failed without a reason");
   const Answer answer = read_answer(
       answer_with("", R"({"R_wc": [0.8,-0.6001,0, 0.6,0.8,0, 0,0,1], "center": [0,0,0]})"),
       kExpected);
@@ -314,7 +351,7 @@ TEST(ReadAnswer, NamesTheKeyOfAnError) {
       const auto& [line, message] : {
           std::pair{std::string("cameras"), std::string("invalid JSON from byte 1 on: 'cameras'")},
           {"", "invalid JSON"},
-          {R"({"cameras": NaN})", "invalid JSON"},
+          {R"({"cameras": NaN})", "cameras: expected an array"},
           {"[1]", "answer: expected an object"},
           {"{}", "cameras: is missing, as is failed"},
           {R"({"camrea": 1})", "camrea: unknown key, expected id, failed, cameras"},
@@ -327,11 +364,16 @@ TEST(ReadAnswer, NamesTheKeyOfAnError) {
           {answer_with("", R"({"center": [0,0,0]})"), "cameras[1].R_wc: is missing"},
           {camera("[1,2,3]", "[0,0,0]"), "cameras[1].R_wc: expected 9 numbers"},
           {camera("[1,0,0, 0,1,0, 0,0,1, 0]", "[0,0,0]"), "cameras[1].R_wc: expected 9 numbers"},
-          {camera("[1,0,0, 0,1,0, 0,0,\"1\"]", "[0,0,0]"), "cameras[1].R_wc: expected 9 numbers"},
+          {camera("[1,0,0, 0,1,0, 0,0,\"1\"]", "[0,0,0]"),
+           "cameras[1].R_wc: found '1', expected 9 numbers"},
           {camera("[1,0,0, 0,1,0, 0,0,2]", "[0,0,0]"), "cameras[1].R_wc: expected a rotation"},
-          {camera("[1,0,0, 0,1,0, 0,0,-1]", "[0,0,0]"), "cameras[1].R_wc: expected a rotation"},
+          {camera("[1,0,0, 0,1,0, 0,0,-1]", "[0,0,0]"),
+           "cameras[1].R_wc: expected a rotation matrix, row by row, found a reflection"},
+          {camera(nine, "[0, NaN, 0]"), "cameras[1].center: found 'NaN', expected 3 numbers"},
+          {camera(nine, "[0,0,-Infinity]"), "cameras[1].center: found '-Infinity', expected 3"},
           {camera(nine, "[0,0]"), "cameras[1].center: expected 3 numbers"},
-          {camera(nine, "[0,0,1e300]"), "cameras[1].center: expected 3 numbers"},
+          {camera(nine, "[0,0,1e300]"),
+           "cameras[1].center: 1e+300 is too large, expected at most 1e+12"},
           {camera(nine, "[0,0,1e999]"), "out of range"},
           {answer_with(R"(, "id": 3)"), "id: expected 4, as in the question"},
           {answer_with(R"(, "plane": {"normal": [0,0,0], "distance": 1})"),
@@ -346,7 +388,8 @@ TEST(ReadAnswer, NamesTheKeyOfAnError) {
           {answer_with(
                R"(, "points": [{"track": 1, "position": [0,0,1]}, {"track": 1, "position": [0,0,1]}])"),
            "points[1].track: expected each track once, found 1 again"},
-          {answer_with(R"(, "milliseconds": "1")"), "milliseconds: expected a number"},
+          {answer_with(R"(, "milliseconds": "1")"), "milliseconds: found '1', expected a number"},
+          {answer_with(R"(, "milliseconds": -3)"), "milliseconds: expected 0 or more, found -3"},
           {std::string(100'000, '['), "nested too deep"},
       })
     EXPECT_THAT(error_of([&, &line = line] { read_answer(line, kExpected); }), HasSubstr(message))

@@ -10,7 +10,7 @@
 #include <limits>
 #include <utility>
 
-#include <gtest/gtest.h>
+#include <gmock/gmock.h>
 
 namespace gpo::test {
 namespace {
@@ -36,6 +36,19 @@ TEST(WindowChecks, RefuseListsOfDifferentSizesByEveryMethod) {
     for (const Method& method : methods())
       EXPECT_EQ(error_of([&] { method.initialize(window, {}, {}); }), expected) << method.key;
   }
+}
+
+TEST(WindowChecks, CountOnlyTracksThatWereNotLeftOut) {
+  Window window = simulate({.frames = 5, .points = 30}).window;
+  window.inliers = Inliers::planes;
+  window.planes.clear();
+  const auto leave_out = [&](int count) {
+    for (Eigen::Matrix2Xd& points : window.points_px)
+      points.leftCols(count).setConstant(std::numeric_limits<double>::quiet_NaN());
+    return reason_not_to_try(window).value_or("");
+  };
+  EXPECT_THAT(leave_out(10), testing::HasSubstr("no plane: no set of the 20 tracks agrees"));
+  EXPECT_THAT(leave_out(30), testing::HasSubstr("the first of the window, has 0, at least 8"));
 }
 
 }  // namespace
