@@ -120,6 +120,35 @@ std::vector<Squares> squares_of_frames(const std::vector<MovingCorners>& moving,
   return all;
 }
 
+/// Returns the camera with an error of one standard deviation of each focal length and of the
+/// principal point's coordinates, those of a typical calibration if they are unknown.
+std::vector<Camera> other_cameras(const Camera& camera) {
+  std::vector<Camera> others(4, camera);
+  const double typical_px = kTypicalLensShare * camera.width;
+  const auto sigma = [&](std::size_t k, double typical) {
+    return camera.sigmas.empty() ? typical : camera.sigmas[k];
+  };
+  others[0].fx += sigma(0, kTypicalLensShare * camera.fx);
+  others[1].fy += sigma(1, kTypicalLensShare * camera.fy);
+  others[2].cx += sigma(2, typical_px);
+  others[3].cy += sigma(3, typical_px);
+  return others;
+}
+
+/// Returns the readout time with the least sum of the squares around `middle`, and its standard
+/// deviation by the least squares; nullopt if there is none.
+std::optional<Readout> readout_near(const std::vector<Squares>& frames,
+                                    const Readout& middle,
+                                    double step_s,
+                                    double freedom_per_frame) {
+  Squares sum = Squares::Zero();
+  for (const Squares& one : frames) sum += one;
+  const auto shift =
+      least_readout(sum, step_s, freedom_per_frame * static_cast<double>(frames.size()));
+  if (!shift) return std::nullopt;
+  return Readout{middle.seconds + shift->seconds, shift->sigma_s};
+}
+
 /// The standard deviation without one of several blocks of time each.
 double jackknife_sigma_s(const std::vector<Squares>& frames, double step_s) {
   constexpr int kBlocks = 5;
@@ -155,24 +184,35 @@ std::optional<Readout> readout_from_board(const BoardCorners& corners,
                                           const Board& board,
                                           const Camera& camera) {
   constexpr std::size_t kLeastFrames = 10;
-  constexpr double kLeastSigma_s = 1e-3;  // by errors of the lens and the board, which all share
+  constexpr double kLeastSigma_s = 1e-3;  // by errors of the board, which all frames share
   constexpr double kMost_s = 0.1, kSignificantSigmas = 4;
+  constexpr double kFirstStep_s = 0.01, kLastStep_s = 0.003;
   const auto moving = moving_corners(corners, frames, timestamps_ns);
-  Readout found;
-  for (const double step_s : {0.01, 0.003}) {
-    const auto squares = squares_of_frames(moving, board, camera, found, step_s);
+  if (moving.size() < kLeastFrames) return std::nullopt;
+  const double freedom = 2.0 * static_cast<double>(moving.front().seen.size()) - 6;
+  const auto significant = [&](const std::optional<Readout>& one) {
+    return one && std::abs(one->seconds) < kMost_s &&
+           std::abs(one->seconds) > kSignificantSigmas * std::max(one->sigma_s, kLeastSigma_s);
+  };
+  std::optional<Readout> found = Readout{};
+  std::vector<Squares> squares;
+  for (const double step_s : {kFirstStep_s, kLastStep_s}) {
+    squares = squares_of_frames(moving, board, camera, *found, step_s);
     if (squares.size() < kLeastFrames) return std::nullopt;
-    Squares sum = Squares::Zero();
-    for (const Squares& one : squares) sum += one;
-    const double per_frame = 2.0 * static_cast<double>(moving.front().seen.size()) - 6;
-    const auto shift = least_readout(sum, step_s, per_frame * static_cast<double>(squares.size()));
-    if (!shift) return std::nullopt;
-    found.seconds += shift->seconds;
-    found.sigma_s = std::max({shift->sigma_s, jackknife_sigma_s(squares, step_s), kLeastSigma_s});
-    const double size_s = std::abs(found.seconds);
-    if (size_s > kMost_s || size_s < kSignificantSigmas * found.sigma_s) return std::nullopt;
+    found = readout_near(squares, *found, step_s, freedom);
+    if (!significant(found)) return std::nullopt;
   }
-  return found;
+  double lens_variance = 0;
+  for (const Camera& other : other_cameras(camera)) {
+    const auto by_other = readout_near(
+        squares_of_frames(moving, board, other, *found, kLastStep_s), *found, kLastStep_s, freedom);
+    if (!by_other) return std::nullopt;
+    lens_variance += std::pow(by_other->seconds - found->seconds, 2);
+  }
+  const double noise_s =
+      std::max({found->sigma_s, jackknife_sigma_s(squares, kLastStep_s), kLeastSigma_s});
+  found->sigma_s = std::hypot(noise_s, std::sqrt(lens_variance));
+  return significant(found) ? found : std::nullopt;
 }
 
 std::vector<Eigen::Vector2d> corner_velocities(const BoardCorners& corners,
