@@ -39,11 +39,23 @@ Matrix3d lowered(const Matrix3d& covariance, const Vector3d& normal, const Matri
   return covariance - tangents * less.topLeftCorner<2, 2>() * tangents.transpose();
 }
 
+void lower_normal(const MatrixXd& less, Initialization& result) {
+  Uncertainty& u = *result.uncertainty;
+  const double before_deg = u.normal_sigma_deg;
+  set_normal_covariance(lowered(u.normal_covariance, result.plane.normal, less), u);
+  const double kept = before_deg > 0 ? u.normal_sigma_deg / before_deg : 1;
+  for (auto* part_deg : {&u.neighbors_sigma_deg,
+                         &u.bend_sigma_deg,
+                         &u.clock_sigma_deg,
+                         &u.shutter_sigma_deg,
+                         &u.lens_sigma_deg})
+    if (*part_deg) **part_deg *= kept;  // as if all shrank alike
+}
+
 void lower_covariances(const JointRows& rows, const MatrixXd& less, Initialization& result) {
   Uncertainty& u = *result.uncertainty;
   const Index leading = rows.of_plane(0);
-  set_normal_covariance(
-      lowered(u.normal_covariance, result.plane.normal, less.block<2, 2>(leading, leading)), u);
+  lower_normal(less.block<2, 2>(leading, leading), result);
   for (std::size_t k = 0; k < u.others.size(); ++k) {
     const Index at = rows.of_plane(static_cast<int>(k) + 1);
     Matrix3d& covariance = u.others[k].normal_covariance;

@@ -97,6 +97,13 @@ TEST_P(InertialRoom, MovesPlanesWithinTheirUncertaintyIfJoint) {
       EXPECT_GT(angle_deg(a.plane.normal, b.plane.normal), 0);
       EXPECT_LT(angle_deg(a.plane.normal, b.plane.normal), 4 * sigma_deg);
       EXPECT_LT(b.rms_px, 1.1 * a.rms_px);
+      double parts = 0;
+      for (const auto& part_deg : {b.uncertainty->neighbors_sigma_deg,
+                                   b.uncertainty->bend_sigma_deg,
+                                   b.uncertainty->shutter_sigma_deg,
+                                   b.uncertainty->lens_sigma_deg})
+        parts += std::pow(part_deg.value_or(0), 2);
+      EXPECT_LE(std::sqrt(parts), b.uncertainty->normal_sigma_deg);
     }
 }
 
