@@ -35,7 +35,10 @@ struct Session {
   WindowInput input{window.glfw()};
   Gui gui{window};
   WorkbenchHost host;
-  std::deque<ScriptLine> script;
+  fs::path script_file;
+  std::deque<ScriptLine> script;  ///< its lines that are left
+  bool runs_script = false;       ///< until the results of its last line are computed
+  std::string script_place = {};  ///< file and line before an error of that line
   Clock::time_point last = Clock::now();
   double seconds = 0;  ///< between the last two iterations of the loop
   SessionSaver saver;
@@ -125,19 +128,32 @@ struct Session {
     saver.advance(host.state, seconds);
   }
 
-  /// Runs the next command once the results of the previous one are computed.
+  /// Runs the script's next line once the results of the previous one are computed. Throws
+  /// InputError if one of both fails.
   void continue_script() {
-    if (script.empty() || host.busy()) return;
-    const auto call = match_line(script.front().text);
-    if (call && call->action->opens_device)
-      say(host.state,
-          call->action->name + ": scripts open no cameras and streams; start with `view SOURCE`",
-          Severity::error);
-    else
-      run_action(host.state, script.front().text);
-    saver.note_change();
+    if (!runs_script || host.busy()) return;
+    const auto& log = host.state.messages.lines;
+    const auto error = std::ranges::find(log, Severity::error, &LogLine::severity);
+    if (error != log.end()) throw InputError(script_place + error->text);
+    runs_script = !script.empty();
+    if (!runs_script) return;
+    script_place = fmt::format("{}:{}: ", script_file.string(), script.front().number);
+    try {
+      run_script_line(script.front().text);
+    } catch (const InputError& refused) {
+      throw InputError(script_place + refused.what());
+    }
     script.pop_front();
     glfwPostEmptyEvent();
+  }
+
+  void run_script_line(const std::string& line) {
+    const auto call = match_line(line);
+    if (call && call->action->opens_device)
+      throw InputError(call->action->name +
+                       ": scripts open no cameras and streams; start with `view SOURCE`");
+    run_line(host.state, line);
+    saver.note_change();
   }
 
   void run() {
@@ -183,7 +199,9 @@ int open_window(const ViewArguments& arguments, OwnMethods& own, Interrupt& inte
   const auto lines = arguments.script ? read_script(*arguments.script) : std::vector<ScriptLine>{};
   Session session(inspect, own);
   WorkbenchHost& host = session.host;
+  session.script_file = arguments.script.value_or("");
   session.script.assign(lines.begin(), lines.end());
+  session.runs_script = !lines.empty();
   host.link.remembers_files = true;
   host.link.calibrates = inspect.calibrate == "auto";
   host.state.files.asks = true;
@@ -222,7 +240,9 @@ RunCommand add_view(CLI::App& app) {
   CLI::App& command = *app.add_subcommand("view", "Opens the window (the default)");
   add_recording(command, to->inspect);
   command.add_option("--session", to->session, "Session to continue, a JSON file");
-  command.add_option("--script", to->script, "File of commands to start with, one per line");
+  command.add_option("--script",
+                     to->script,
+                     "File of commands to start with, one per line; an error ends the program");
   command.add_option(
       "--live", to->live, "Video or recording to play in real time, as if from a camera");
   return [to](OwnMethods& own, Interrupt& interrupt) {
