@@ -17,6 +17,14 @@ TEST(RunWithMasks, LeavesOutTracksInMasks) {
   EXPECT_FALSE(whole["settings"].contains("mask"));
 }
 
+TEST(RunWithMasks, CountsOnlyTheTracksOutsideOfMasks) {
+  const auto tracks = [](const char* options) {
+    const std::string text = succeeding("run {} --frames 12 {}", kDesk, options).out;
+    return std::stoi(*matches_in(text, R"(inliers +\d+ of (\d+))", 1).begin());
+  };
+  EXPECT_LT(tracks("--mask not:0,0,300,479"), tracks(""));
+}
+
 TEST(RunWithMasks, ExtrapolatesCamerasAfterTheWindowOnRequestOnly) {
   const fs::path folder = fresh_folder();
   const json result =

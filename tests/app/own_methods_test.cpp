@@ -116,6 +116,14 @@ TEST(MethodCommand, IsShownInComparisonAndCurves) {
   }
 }
 
+TEST(MethodCommand, HasTheWindowsUncertaintyAndTheTextSaysSo) {
+  const fs::path folder = fresh_folder();
+  const std::string mine = answering_with(run_json("{} --frames 10 --method gpo", kDesk), folder);
+  const Outcome outcome =
+      succeeding("run sequences/desk --frames 10 --method mine --method-command mine=\"{}\"", mine);
+  EXPECT_THAT(outcome.out, HasSubstr("1 sigma of the window, not of the method"));
+}
+
 /// A session saved with an own method, whose command leaves a file where it is started.
 class SessionWithCommand : public testing::Test {
  protected:

@@ -56,16 +56,19 @@ std::string sigma_text(double sigma_deg, int digits) {
 
 std::string normal_text(const Uncertainty& u, CameraSource source) {
   const char* rotations = to_string(u.rotations);
+  const char* one_sigma = u.own ? "1 sigma" : "1 sigma of the window, not of the method";
   const bool guess = source == CameraSource::guess;
   if (u.typical_lens_sigma_deg)
-    return fmt::format("normal {} (lens exact), {} ({}); 1 sigma, rotations {}",
+    return fmt::format("normal {} (lens exact), {} ({}); {}, rotations {}",
                        sigma_text(u.normal_sigma_deg, 3),
                        sigma_text(*u.typical_lens_sigma_deg, 3),
                        guess ? "lens a guess" : "typical calibration",
+                       one_sigma,
                        rotations);
   return fmt::format(
-      "normal {} (1 sigma; rotations {}, lens {})",
+      "normal {} ({}; rotations {}, lens {})",
       sigma_text(u.normal_sigma_deg, 3),
+      one_sigma,
       rotations,
       u.lens_sigma_deg.value_or(0) > 0 ? sigma_text(*u.lens_sigma_deg, 3) + " of it" : "exact");
 }
@@ -148,8 +151,12 @@ std::string chosen_text(const Inspection& inspection) {
                     : scale->reason);
   }
   if (const auto& world = inspection.chosen_world; world && world->reason.empty()) {
-    const Eigen::Vector3d camera = world->T_world_reference.p_wc;
-    text += row("world", "reference camera at {:.4f}  (plane distances)", fmt::join(camera, " "));
+    const auto known = known_scale(inspection);  // the unit of the JSON
+    const Eigen::Vector3d camera = known.value_or(1) * world->T_world_reference.p_wc;
+    text += row("world",
+                "reference camera at {:.4f}  ({})",
+                fmt::join(camera, " "),
+                known ? "meters" : "plane distances");
   }
   return text;
 }
@@ -211,6 +218,14 @@ std::string kitti_line(std::int64_t /*ns*/, const Pose& camera) {
   return fmt::format("{:.9e}\n", fmt::join(T.data(), T.data() + T.size(), " "));
 }
 
+/// Returns the number of tracks that were not excluded by hand.
+int used_tracks(const Inspection& inspection) {
+  int count = 0;
+  for (int column = 0; column < inspection.window->track_count(); ++column)
+    count += is_excluded(inspection, column) ? 0 : 1;
+  return count;
+}
+
 }  // namespace
 
 std::string to_text(const Inspection& inspection) {
@@ -218,7 +233,7 @@ std::string to_text(const Inspection& inspection) {
   const Window& window = *inspection.window;
   const Timing& t = inspection.timing;
   const int frames = window.frame_count(), last = window.start + frames - 1;
-  const int inliers = window.inlier_count(0), tracks = window.track_count();
+  const int inliers = window.inlier_count(0), tracks = used_tracks(inspection);
   std::string text = row("recording", inspection.recording->name) +
                      row("window", "frames {} to {} ({})", window.start, last, frames) +
                      camera_row(*inspection.recording) +
