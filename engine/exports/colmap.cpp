@@ -56,12 +56,6 @@ std::vector<double> padded(std::vector<double> values, std::size_t count) {
   return values;
 }
 
-bool has_distortion(const Camera& camera) {
-  return camera.distortion != Distortion::none &&
-         (camera.distortion != Distortion::radial_tangential ||
-          std::ranges::any_of(camera.coefficients, [](double k) { return k != 0; }));
-}
-
 /// Returns COLMAP's model of the lens. Lenses that it lacks are those of the undistorted image.
 ColmapCamera colmap_camera(const Camera& camera) {
   constexpr std::size_t kOpenCv = 4, kFullOpenCv = 8;
@@ -264,9 +258,10 @@ void add_notes(const ColmapModelFiles& model, const ExportScene& scene, ExportNo
   const Camera& camera = inspection.recording->camera;
   if (!model.camera.distorted && has_distortion(camera))
     notes.push_back(
-        fmt::format("COLMAP has no model of the lens {}: camera and observations are those of the "
-                    "undistorted image. Undistort the images before COLMAP uses them",
-                    lens_model(camera.distortion).name));
+        fmt::format("COLMAP has no model of the lens {} with {}: camera and observations are those "
+                    "of the undistorted image. Undistort the images before COLMAP uses them",
+                    lens_model(camera.distortion).name,
+                    counted(camera.coefficients.size(), "coefficient")));
   if (inspection.initialization->row_delay_s)
     notes.emplace_back(
         "the result has a rolling shutter: COLMAP has one pose per image, so its errors are "

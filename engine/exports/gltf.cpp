@@ -354,8 +354,11 @@ std::string gltf_bytes(const ExportScene& scene, ExportNotes& notes) {
                               file.is_metric() ? "meter" : "distance of the plane",
                               file.up_source()));
   for (const std::string& left_out : scene.left_out) notes.push_back("left out: " + left_out);
-  if (scene.inspection.recording->camera.distortion != Distortion::none)
+  const Camera& camera = scene.inspection.recording->camera;
+  if (has_distortion(camera))
     notes.emplace_back("left out: lens distortion of the cameras, which glTF lacks");
+  if (camera.cx != (camera.width - 1) / 2. || camera.cy != (camera.height - 1) / 2.)
+    notes.emplace_back("left out: principal point, which glTF has in the middle of the image");
   return bytes;
 }
 

@@ -222,6 +222,12 @@ ExportScene export_scene(const Inspection& inspection, const ExportChoices& choi
   return scene;
 }
 
+bool has_distortion(const Camera& camera) {
+  return camera.distortion != Distortion::none &&
+         (camera.distortion != Distortion::radial_tangential ||
+          std::ranges::any_of(camera.coefficients, [](double k) { return k != 0; }));
+}
+
 std::string image_name(const Recording& recording, int frame) {
   if (std::ssize(recording.image_files) == recording.frame_count())
     return recording.image_files[frame].filename().string();

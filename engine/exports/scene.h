@@ -74,6 +74,9 @@ inline constexpr std::uint32_t kOutlierRgb = 0xF0503C;
 /// Throws InputError if the initialization failed or a requested scale or world is unknown.
 ExportScene export_scene(const Inspection& inspection, const ExportChoices& choices);
 
+/// Returns whether the lens distorts: a radial-tangential one without coefficients does not.
+bool has_distortion(const Camera& camera);
+
 /// Returns the file name of a frame's image; for a video or a bag the one that `convert` writes.
 std::string image_name(const Recording& recording, int frame);
 

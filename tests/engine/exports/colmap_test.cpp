@@ -181,7 +181,9 @@ TEST(ColmapExport, UnknownLensIsUndistortedAndSaysSo) {
   const fs::path model = folder.path() / "model";
   const ExportNotes notes = write_export(room, {}, {&export_format("colmap"), model});
   EXPECT_THAT(read_file(model / "cameras.txt"), HasSubstr("PINHOLE 640 480 400 410 325.5 236.5"));
-  EXPECT_THAT(notes, Contains(StartsWith("COLMAP has no model of the lens double-sphere")));
+  EXPECT_THAT(
+      notes,
+      Contains(StartsWith("COLMAP has no model of the lens double-sphere with 2 coefficients")));
   // Observations are those of the undistorted image, half a pixel further.
   std::istringstream lines(read_file(model / "images.txt"));
   std::string line;

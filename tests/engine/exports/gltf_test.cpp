@@ -20,7 +20,7 @@ namespace gpo::test {
 namespace {
 
 using nlohmann::json;
-using testing::Contains, testing::HasSubstr;
+using testing::AllOf, testing::Contains, testing::HasSubstr, testing::Not;
 
 const Camera kGltfLens{640, 480, 500, 510, 325, 236, Distortion::none, {}};
 
@@ -136,6 +136,16 @@ TEST_F(GltfExport, PlanesAreTexturedQuadsWithThePointsOnThem) {
       gltf.root["accessors"][points["primitives"][0]["attributes"]["POSITION"].get<std::size_t>()];
   EXPECT_EQ(accessor["count"], room.window->track_count() - 1);
   EXPECT_EQ(gltf.node("cube on plane 2")["name"], "cube on plane 2");
+}
+
+TEST_F(GltfExport, NamesWhatItsCamerasLack) {
+  const auto distortion = HasSubstr("left out: lens distortion");
+  const auto center = HasSubstr("left out: principal point");
+  exported(exported_room({640, 480, 400, 410, 325, 236, Distortion::radial_tangential, {0.1, 0}}));
+  EXPECT_THAT(notes, AllOf(Contains(distortion), Contains(center)));
+  exported(
+      exported_room({640, 480, 400, 410, 319.5, 239.5, Distortion::radial_tangential, {0, 0}}));
+  EXPECT_THAT(notes, AllOf(Not(Contains(distortion)), Not(Contains(center))));
 }
 
 TEST_F(GltfExport, UpIsTheFloorsNormalTheWorldsOrGravitys) {
