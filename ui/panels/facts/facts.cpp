@@ -251,10 +251,10 @@ ResultGroup uncertainty_group(const Inspection& inspection) {
                  : milliseconds_text(1e3 * *result.time_offset_s),
          .tooltip = "Estimated offset, with its standard deviation: gyroscope "
                     "time = camera time + offset"});
-  group.rows.push_back(bound_row(
-      "Bound, known rotations", u.bound_known_rotations_deg, "if the rotations are exact", why));
   group.rows.push_back(
-      bound_row("Bound, unknown bias",
+      bound_row("Bound, known R", u.bound_known_rotations_deg, "if the rotations are exact", why));
+  group.rows.push_back(
+      bound_row("Bound, free bias",
                 u.bound_unknown_bias_deg,
                 "if a constant bias and the clock of the gyroscope are estimated, too",
                 result.uncertainty ? "Unknown: it needs rotations from a gyroscope" : why));

@@ -235,11 +235,11 @@ TEST(UncertaintyFacts, HaveUnitsAndTheRotationModel) {
                  {"Normal", "\u00b10.310\u00b0"},
                  {"Distance ratio", "0.9978 \u00b10.0013"},
                  {"Bias x", "0.01230 \u00b10.00050 rad/s"},
-                 {"Bound, known rotations", "0.186\u00b0"},
-                 {"Bound, unknown bias", "0.279\u00b0"}});
+                 {"Bound, known R", "0.186\u00b0"},
+                 {"Bound, free bias", "0.279\u00b0"}});
   EXPECT_EQ(rows.at("Rotation alone").note, "noise 0.40 px");
   EXPECT_EQ(rows.at("Normal").note, "gyro bias unknown");
-  for (const char* label : {"Bound, known rotations", "Bound, unknown bias"})
+  for (const char* label : {"Bound, known R", "Bound, free bias"})
     EXPECT_THAT(rows.at(label).tooltip, HasSubstr("degrees"));
 }
 
