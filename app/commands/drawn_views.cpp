@@ -91,13 +91,22 @@ DrawnView draw_one(const std::shared_ptr<const Recording>& recording,
   return drawn;
 }
 
-std::vector<int> lengths_of(const ViewRequest& request) {
+std::vector<int> lengths_of(const ViewRequest& request, int frame_count) {
   const std::string text = request.lengths.value_or("5:end:5");
   std::vector<int> lengths = numbers_in(parse_ranges(text, "lengths"), request.window.frames);
   if (lengths.empty() || lengths.front() < 2)
     throw InputError(fmt::format("--lengths: '{}' with --frames {}: a window has at least 2 frames",
                                  text,
                                  request.window.frames));
+  const int most = frame_count - request.window.start;
+  if (lengths.back() > most)
+    throw InputError(
+        fmt::format("--lengths: '{}' has a window of {} frames from frame {} on, but "
+                    "the recording has {} from there on",
+                    text,
+                    lengths.back(),
+                    request.window.start,
+                    most));
   std::ranges::reverse(lengths);
   return lengths;
 }
@@ -145,7 +154,7 @@ Figure curves_over_length(const std::shared_ptr<const Recording>& recording,
   std::vector<Row> rows;
   Inspector inspector(recording);
   // The longest window comes first: the Inspector caches its tracks for the others.
-  for (const int length : lengths_of(request)) {
+  for (const int length : lengths_of(request, recording->frame_count())) {
     window.frames = length;
     for (const Configuration& configuration : configurations) {
       const auto inspection = inspected(inspector, apply(configuration, window), stop);

@@ -168,6 +168,9 @@ void check(const SnapshotArguments& arguments) {
                                       {"--live", arguments.live},
                                       {"recording", arguments.inspect.recording}};
   check_outputs({{"--output", arguments.output}}, inputs);
+  std::error_code none;
+  if (arguments.baseline && !fs::exists(*arguments.baseline, none))
+    throw InputError(fmt::format("--baseline: {}: no such file", arguments.baseline->string()));
   if (arguments.baseline)
     check_outputs({{"--output's .diff.png", difference_file(arguments)}}, inputs);
 }

@@ -79,6 +79,8 @@ bool is_standard_output(const fs::path& file) { return file == "-"; }
 void check_outputs(const std::vector<NamedFile>& outputs, const std::vector<NamedFile>& inputs) {
   for (const NamedFile& output : outputs) {
     if (!output.path) continue;
+    if (output.path->empty())
+      throw InputError(fmt::format("{}: '', expected the name of a file", output.option));
     for (const NamedFile& earlier : std::span(outputs.data(), &output))
       check_differ(output, earlier, "expected a file for each");
     for (const NamedFile& input : inputs)

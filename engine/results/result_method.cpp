@@ -332,9 +332,17 @@ void read_shift(const std::string& value, ProgramResult& result) {
   constexpr double kMost_s = 1e6;
   const auto number = value == "auto" ? std::optional(0.0) : parse_number(value);
   if (!number || !(std::abs(*number) <= kMost_s))
-    refuse("--result", "'offset={}', expected auto or seconds, e.g. offset=0.02", value);
+    refuse("--result", "'offset={}', expected auto or seconds of at most {:g}", value, kMost_s);
   result.shift = value == "auto" ? TimeShift::estimated : TimeShift::given;
   result.shift_s = *number;
+}
+
+/// Returns `choice`, whose errors then name the option.
+template <class E>
+E choice_in_result(const std::string& value) try {
+  return choice<E>(value);
+} catch (const SettingError& error) {
+  refuse("--result", "{}", error.what());
 }
 
 }  // namespace
@@ -347,9 +355,9 @@ ProgramResult parse_program_result(const std::string& text) {
   for (const std::string& part : split(files, ',')) {
     const std::string value = part.substr(part.find('=') + 1);
     if (part.starts_with("frame=")) {
-      result.frame = choice<PosedFrame>(value);
+      result.frame = choice_in_result<PosedFrame>(value);
     } else if (part.starts_with("scale=")) {
-      result.scale = choice<ResultScale>(value);
+      result.scale = choice_in_result<ResultScale>(value);
     } else if (part.starts_with("offset=")) {
       read_shift(value, result);
     } else if (result.poses.empty()) {

@@ -176,8 +176,9 @@ TEST(Snapshot, RefusesBadInputInOneLineAndLeavesNoFile) {
        {"--view curves --methods gpo+nonsense",
         "unknown setting 'nonsense', expected one of ransac"},
        {"--view curves --lengths 1", "--lengths"},
+       {"--view curves --lengths 5:200:5", "--lengths: '5:200:5' has a window of 200 frames"},
        {"--view compare --frame 60", "--frame: 60 is not in the recording"},
-       {"--view image --baseline no.png", "--baseline: cannot decode no.png as an image"}});
+       {"--view image --baseline no.png", "--baseline: no.png: no such file"}});
 }
 
 TEST(Snapshot, ReportsThatOneImageIsNoWindow) {
@@ -266,7 +267,7 @@ TEST_F(Script, StopsAtTheFirstInvalidLine) {
         {"frame 200\n", "script.txt:1: frame: 200 is outside of the recording, expected 0 to 59"},
         {"frame 59\nframe -1\n", "script.txt:2: frame: -1 is outside of the recording"},
         {"screenshot a.png 4294967936x480\n", "script.txt:1: screenshot: '4294967936x480'"},
-        {"set frames 1\n", "script.txt:1: frames: '1', expected a number from 2 to 1000"},
+        {"set frames 1\n", "script.txt:1: frames: '1', expected a whole number from 2 to 1000"},
         {"open no/such/folder\n", "script.txt:1: no/such/folder"},
         {"frame 3\nmodel README.md\n", "script.txt:2: model: README.md: expected .obj, .ply"},
         {"export result no/such/a.json\n", "script.txt:1: no/such/a.json"}}) {
@@ -326,6 +327,24 @@ TEST_F(RealWindow, FollowsATourByMouseAndKeyboard) {
   fs::copy(desk(), other, fs::copy_options::recursive | fs::copy_options::overwrite_existing);
   const Outcome outcome = driven("tour_window.sh", "'" + other.string() + "'");
   EXPECT_EQ(outcome.exit_code, 0) << outcome.err << outcome.out;
+}
+
+TEST_F(RealWindow, EndsAtTheFirstInvalidLineOfAScript) {
+  const fs::path folder = fresh_folder();
+  for (const auto& [line, message] :
+       {std::pair{"fly", "script.txt:1: unknown command \"fly\""},
+        {"frame 99", "script.txt:1: frame: 99 is outside of the recording"},
+        {"open no/such/folder", "script.txt:1: no/such/folder"}}) {
+    write_file(folder / "script.txt",
+               fmt::format("{}\nscreenshot {}/after.png\nquit\n", line, folder));
+    const Outcome outcome =
+        shell("XDG_STATE_HOME={0} '" GPO_SOURCE_DIR "/tests/with_display.sh' 800x600 '" GPO_PROGRAM
+              "' view '{1}' --script {0}/script.txt",
+              folder,
+              kDesk);
+    expect_exit(2, outcome, message);
+    EXPECT_FALSE(fs::exists(folder / "after.png")) << line;
+  }
 }
 
 TEST(View, WithoutADisplayPointsToSnapshot) {

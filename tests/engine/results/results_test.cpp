@@ -280,14 +280,14 @@ TEST_F(ResultMethod, RejectsATimeOffsetOfPosesWithoutTimes) {
 TEST_F(ResultMethod, RejectsInvalidText) {
   for (const auto& [text, message] : std::vector<std::pair<std::string, std::string>>{
            {"it=a,offset=soon", "'offset=soon', expected auto or seconds"},
-           {"it=a,offset=1e9", "expected auto or seconds"},
-           {"it=a,scale=big", "unknown"},
+           {"it=a,offset=1e9", "expected auto or seconds of at most 1e+06"},
+           {"it=a,scale=big", "--result: scale: unknown value 'big'"},
            {"it", "--result: 'it', expected NAME=FILE"},
            {"it=", "--result: 'it='"},
            {"a b=c", "--result"},
            {"it=,,", "names no file"},
            {"it=a,b,c", "expected NAME=FILE"},
-           {"it=a,frame=wheel", "unknown"}})
+           {"it=a,frame=wheel", "--result: frame: unknown value 'wheel'"}})
     EXPECT_THAT(error_of([&, &text = text] { parse_program_result(text); }), HasSubstr(message));
 }
 
