@@ -169,6 +169,8 @@ int run_once(const RunArguments& run) {
   const auto inspection = Inspector(recording).inspect(settings, current_stop());
   if (!inspection) throw Stopped{};
   report_unused(arguments.given, {&inspection, 1});
+  if (run.extrapolated_trajectory && !run.trajectory)
+    fmt::print(stderr, "--extrapolated-trajectory is not used. No trajectory is written\n");
   if (run.trajectory_format && !run.trajectory && !run.true_trajectory)
     fmt::print(stderr, "--trajectory-format is not used. No trajectory is written\n");
   const bool needs_stdout = std::ranges::any_of(

@@ -279,6 +279,30 @@ TEST(Run, WarnsAboutUnusedOptions) {
   EXPECT_EQ(run_json("{} --method gpo_joint", kDesk)["unused_settings"], json::array());
 }
 
+TEST(Run, WarnsAboutSettingsThatOthersSwitchOff) {
+  EXPECT_EQ(succeeding("run sequences/desk --frames 12 --method gpo --gravity off "
+                       "--accelerometer-bias-sigma 0.1 --scale-length-sigma 0.1 --world-up gravity "
+                       "--extrapolate 2 --extrapolated-trajectory")
+                .err,
+            "--accelerometer-bias-sigma is not used. Gravity is not estimated\n"
+            "--scale-length-sigma is not used. There are no scale points\n"
+            "--world-up is not used. There are no world points\n"
+            "--extrapolated-trajectory is not used. No trajectory is written\n");
+}
+
+TEST(Run, RefusesAnEmptyFileName) {
+  expect_refused(program("run {} --json ''", kDesk), "--json: '', expected the name of a file");
+}
+
+TEST(Run, ShowsAChosenWorldInTheUnitOfItsExports) {
+  const std::string world = "--frames 12 --world-points 137,231,432,334";
+  EXPECT_THAT(succeeding("run {} {} --gravity off", kDesk, world).out,
+              HasSubstr("(plane distances)"));
+  const Outcome metric =
+      succeeding("run {} {} --scale-points 137,231,432,334 --scale-length 0.3", kDesk, world);
+  EXPECT_THAT(metric.out, HasSubstr("(meters)"));
+}
+
 TEST(Run, WithoutOptionsTakesAShortRecordingWhole) {
   const fs::path folder = fresh_folder(), camera = folder / "mav0/cam0";
   fs::create_directories(camera);

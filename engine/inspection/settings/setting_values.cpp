@@ -34,8 +34,9 @@ SettingValue in_range(const Setting& setting,
                       double least,
                       double most) {
   const double value = number ? static_cast<double>(*number) : least - 1;
+  const char* kind = std::is_integral_v<Number> ? "a whole number" : "a number";
   if (!(value >= least && value <= most))
-    refuse(setting, text, fmt::format("a number from {:g} to {:g}", least, most));
+    refuse(setting, text, fmt::format("{} from {:g} to {:g}", kind, least, most));
   return *number;
 }
 
@@ -113,6 +114,29 @@ Settings paper() {
                                      .shutter = Shutter::global,
                                      .planes = Planes::one};
   return settings;
+}
+
+/// Returns why another value than the default has no effect with the other settings or in this
+/// recording; empty if it may have one.
+std::string why_change_is_idle(const std::string& key,
+                               const Settings& settings,
+                               const Recording* recording) {
+  const InitializeOptions& options = settings.options;
+  const RotationSource rotations = options.rotations;
+  const bool no_gyroscope = recording != nullptr && !recording->gyroscope;
+  if (key == "ransac" && !options.method.row().result.empty())
+    return "The result of another program uses all tracks";
+  if (key == "time_offset" &&
+      (no_gyroscope || (rotations != RotationSource::automatic && !needs_gyroscope(rotations))))
+    return "The rotations are not from a gyroscope";
+  if (key == "lens" && recording != nullptr && lens_root(recording->camera).cols() > 0)
+    return "The calibration states its standard deviations";
+  if (key == "accelerometer_bias_sigma" && options.gravity == Gravity::off)
+    return "Gravity is not estimated";
+  if ((key == "scale_length" || key == "scale_length_sigma") && settings.scale_points.empty())
+    return "There are no scale points";
+  if (key == "world_up" && settings.world_points.empty()) return "There are no world points";
+  return "";
 }
 
 }  // namespace
@@ -272,7 +296,7 @@ bool is_read(const Setting& setting, const MethodChoice& method) {
 std::string why_idle(const Setting& setting, const Settings& settings, const Recording* recording) {
   switch (setting.reader) {
     case SettingReader::all:
-      return "";
+      break;
     case SettingReader::tracker:
       return recording != nullptr && !recording->tracks.empty() ? "The recording has its own tracks"
                                                                 : "";
@@ -281,14 +305,15 @@ std::string why_idle(const Setting& setting, const Settings& settings, const Rec
                  ? "Without RANSAC every track counts as an inlier"
                  : "";
     case SettingReader::method:
-      if (is_read(setting, settings.options.method)) return "";
+      if (is_read(setting, settings.options.method)) break;
       return fmt::format("Applies only to {}", fmt::join(readers_of(setting.key), " and "));
     case SettingReader::gravity:
       return gravity_used(settings.options) != settings.options.gravity
                  ? "Only gpo_joint estimates gravity jointly; other methods find it afterwards"
                  : "";
   }
-  return "";
+  const bool changed = setting.get(settings) != setting.get(Settings{});
+  return changed ? why_change_is_idle(setting.key, settings, recording) : "";
 }
 
 Settings as_used(Settings settings) {

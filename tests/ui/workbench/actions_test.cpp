@@ -134,7 +134,7 @@ TEST(Actions, ReadArgumentsAndReportInvalidOnes) {
         {"theme pink", "theme: 'pink', expected one of "},
         {"view", "view: expected one of "},
         {"nobody 3", "unknown command \"nobody\"; Ctrl+P lists all commands"},
-        {"set seed -1", "seed: '-1', expected a number from 0 to 1e+09"},
+        {"set seed -1", "seed: '-1', expected a whole number from 0 to 1e+09"},
         {"set colour red", "unknown setting 'colour'"},
         {"tails perhaps", "tails: 'perhaps', expected on or off"},
         {"screenshot a.jpg", "screenshot: 'a.jpg', expected a file name that ends in .png"},

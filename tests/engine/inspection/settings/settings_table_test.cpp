@@ -95,8 +95,8 @@ TEST(SettingValues, RejectInvalidTextByNameAndSortExcludedTracks) {
   const auto refusal = [](const std::string& key, const std::string& text) {
     return error_of([&] { with_setting({}, key, text); });
   };
-  EXPECT_EQ(refusal("frames", "1"), "frames: '1', expected a number from 2 to 1000");
-  EXPECT_EQ(refusal("frames", "2.5"), "frames: '2.5', expected a number from 2 to 1000");
+  EXPECT_EQ(refusal("frames", "1"), "frames: '1', expected a whole number from 2 to 1000");
+  EXPECT_EQ(refusal("frames", "2.5"), "frames: '2.5', expected a whole number from 2 to 1000");
   EXPECT_EQ(refusal("ransac_threshold_px", "nan"),
             "ransac_threshold_px: 'nan', expected a number from 0.1 to 50");
   EXPECT_EQ(refusal("ransac", "yes"), "ransac: 'yes', expected on or off");
@@ -104,7 +104,7 @@ TEST(SettingValues, RejectInvalidTextByNameAndSortExcludedTracks) {
   EXPECT_EQ(refusal("loss", "cauchy"),
             "loss: unknown value 'cauchy', expected one of squared, huber");
   EXPECT_THAT(refusal("method", "gpoo"), HasSubstr("method: unknown value 'gpoo'"));
-  EXPECT_THAT(refusal("exclude", "3,x"), HasSubstr("exclude: 'x', expected a number"));
+  EXPECT_THAT(refusal("exclude", "3,x"), HasSubstr("exclude: 'x', expected a whole number"));
   EXPECT_THAT(refusal("nonsense", "3"), HasSubstr("unknown setting 'nonsense'"));
   EXPECT_THROW(with_setting({}, "frames", "1"), SettingError);
   EXPECT_EQ(with_setting({}, "exclude", "9,3,9").exclude, (std::vector<std::int64_t>{3, 9}));
@@ -134,6 +134,34 @@ TEST(SettingValues, ReportWhyTheyHaveNoEffect) {
   EXPECT_EQ(why_idle(find_setting("tracking"), settings, &recording), "");
   recording.tracks.emplace_back();
   EXPECT_THAT(why_idle(find_setting("tracking"), settings, &recording), HasSubstr("own tracks"));
+}
+
+TEST(SettingValues, ReportChangesWithoutEffect) {
+  Recording recording;
+  const auto expect_idle = [&](const std::string& key, Settings settings, const char* reason) {
+    EXPECT_EQ(why_idle(find_setting(key), Settings{}, &recording), "") << key;
+    EXPECT_THAT(why_idle(find_setting(key), settings, &recording), HasSubstr(reason)) << key;
+  };
+  expect_idle("accelerometer_bias_sigma",
+              {.options = {.gravity = Gravity::off, .accelerometer_bias_sigma_m_s2 = 0.1}},
+              "Gravity is not estimated");
+  expect_idle("scale_length_sigma", {.scale_length_sigma = 0.1}, "no scale points");
+  expect_idle("scale_length", {.scale_length = 0.3}, "no scale points");
+  expect_idle("world_up", {.world_up = WorldUp::gravity}, "no world points");
+  Settings truth{.options = {.rotations = RotationSource::truth}};
+  truth.options.method_options.time_offset = false;
+  expect_idle("time_offset", truth, "not from a gyroscope");
+  recording.gyroscope.emplace();
+  truth.options.rotations = RotationSource::gyro;
+  EXPECT_EQ(why_idle(find_setting("time_offset"), truth, &recording), "");
+  const Settings exact{.options = {.lens = Lens::exact}};
+  EXPECT_EQ(why_idle(find_setting("lens"), exact, &recording), "");
+  recording.camera.sigmas = {1, 1, 1, 1};
+  expect_idle("lens", exact, "states its standard deviations");
+  Method imported = find_method("gpo");
+  imported.result = "x=a.txt";
+  const MethodChoice own(std::make_shared<const Method>(imported));
+  expect_idle("ransac", {.options = {.method = own, .ransac = false}}, "another program");
 }
 
 TEST(SettingValues, HaveEqualNormalFormsForEqualResultsAndAffectOnlyLaterStages) {
