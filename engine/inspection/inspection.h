@@ -108,6 +108,9 @@ struct Inspection {
   std::optional<Eigen::Vector3d> gyroscope_bias_rad_s;  ///< subtracted from the rates
   std::shared_ptr<const Tracks> tracks;
   std::shared_ptr<const Window> window;
+  /// `window` as it was when its inliers were selected, without the row delay that was compensated
+  /// then (`at_time_stamps`); null if none was.
+  std::shared_ptr<const Window> selection = nullptr;
   std::shared_ptr<const WindowTruth> truth;  ///< null if unknown
   std::shared_ptr<const Initialization> initialization;
   /// Motion of the estimated cameras around each frame; empty if no row delay is known.

@@ -4,6 +4,7 @@
 
 #include "engine/base/error.h"
 #include "engine/files/refuse.h"
+#include "engine/frontend/readout_compensation.h"
 #include "engine/methods/plane/rolling_shutter.h"
 #include "engine/methods/recording_method.h"
 #include "engine/pipeline/method_defaults.h"
@@ -240,6 +241,8 @@ struct Inspector::Stages {
     inspection.frames_note = frames_note(settings);
     inspection.tracks = tracks.value;
     inspection.truth = truth.value;
+    if (window.selection_row_delay_s != 0)
+      inspection.selection = std::make_shared<const Window>(at_time_stamps(window));
     inspection.window = std::make_shared<const Window>(std::move(window));
     inspection.initialization =
         std::make_shared<const Initialization>(std::move(end.initialization));

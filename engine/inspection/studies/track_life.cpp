@@ -48,17 +48,28 @@ std::optional<Eigen::Vector2d> predicted_px(const Inspection& inspection,
   return px.allFinite() ? std::optional(px) : std::nullopt;
 }
 
+/// Returns the transfer error that was compared with the threshold, or would have been for excluded
+/// tracks, which the window does not have.
+std::optional<double> transfer_px(const Inspection& inspection, int frame, int column) {
+  if (const Window* selection = inspection.selection.get();
+      selection != nullptr && frame < selection->frame_count()) {
+    const auto& px = selection->points_px;
+    const double error_px =
+        (transfer(selection->H_i1[frame], px[0].col(column)) - px[frame].col(column)).norm();
+    if (std::isfinite(error_px)) return error_px;
+  }
+  const auto seen_px = [&](int i) {
+    return undistort(inspection.recording->camera, inspection.tracks->raw_px[i].col(column));
+  };
+  return if_finite((transfer(inspection.window->H_i1[frame], seen_px(0)) - seen_px(frame)).norm());
+}
+
 /// Reads the tracks, not the window, which does not have the excluded ones.
 TrackFrame frame_of(const Inspection& inspection, int frame, int column, const TrackPlane& on) {
   const Tracks& tracks = *inspection.tracks;
   const Window& window = *inspection.window;
-  const Camera& camera = inspection.recording->camera;
-  const Eigen::Vector2d first_px = undistort(camera, tracks.raw_px[0].col(column));
   TrackFrame seen{.frame = window.start + frame, .raw_px = tracks.raw_px[frame].col(column)};
-  if (frame > 0) {
-    const Eigen::Vector2d undistorted_px = undistort(camera, seen.raw_px);
-    seen.transfer_px = if_finite((transfer(window.H_i1[frame], first_px) - undistorted_px).norm());
-  }
+  if (frame > 0) seen.transfer_px = transfer_px(inspection, frame, column);
   if (on.plane != nullptr) {
     if (const auto predicted = predicted_px(inspection, frame, column, *on.plane))
       seen.residual_px = if_finite((*predicted - seen.raw_px).norm());

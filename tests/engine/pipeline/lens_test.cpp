@@ -119,6 +119,17 @@ TEST(LensVerdict, DependsOnATypicalCalibrationUnlessTheLensIsExact) {
   EXPECT_GT(weak, 0);
 }
 
+TEST(LensVerdict, AGuessIsFarWorseThanATypicalCalibration) {
+  Window window = simulate({.frames = 2}).window;
+  const auto typical = typical_lens_moves_px(window);
+  window.camera_is_guess = true;
+  const auto guess = typical_lens_moves_px(window);
+  ASSERT_EQ(guess.size(), typical.size());
+  for (std::size_t k = 0; k < guess.size(); ++k)
+    EXPECT_GT(guess[k][1].norm(), 6 * typical[k][1].norm()) << k;
+  EXPECT_NEAR(guess[0][1].norm() / typical[0][1].norm(), 0.2 / 0.003, 1e-6) << "focal length";
+}
+
 TEST(LensVerdict, TakesALensAsExactIfItsFileSaysSo) {
   const Views views = views_of({.travel = 0.1});
   const Initialization unknown = solved(views, views.camera);

@@ -7,6 +7,7 @@
 #include "ui/views/image/image_geometry.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include <Eigen/LU>
 #include <gtest/gtest.h>
@@ -59,6 +60,26 @@ TEST(RollingRows, MoveResidualsAndCubes) {
       const Pose at_row = rolling.initialization->cameras[frame] * pose_at_row(camera, px);
       EXPECT_LT((project(rolling.recording->camera, to_camera(at_row, corner)) - px).norm(), 1e-2);
     }
+  }
+}
+
+TEST(RollingRows, TransferErrorsAreThoseThatSelectedTheInliers) {
+  const Inspection still = made_inspection();
+  Inspection rolling = still;
+  roll(rolling, 6e-5);
+  double most_px = 0;
+  for (const bool known : {false, true}) {
+    if (known) rolling.selection = still.window;
+    for (int column = 0; column < 40; ++column) {
+      const TrackLife expected = track_life(still, column), life = track_life(rolling, column);
+      ASSERT_EQ(life.frames.size(), expected.frames.size());
+      for (std::size_t i = 1; i < life.frames.size(); ++i) {
+        const double px = *life.frames[i].transfer_px - *expected.frames[i].transfer_px;
+        if (known) EXPECT_LT(std::abs(px), 1e-6);
+        most_px = std::max(most_px, std::abs(px));
+      }
+    }
+    EXPECT_GT(most_px, 0.5) << "the tracks as they are";
   }
 }
 
