@@ -102,13 +102,16 @@ void set_readout(Camera& camera, const YamlEntry& root) {
   if (!entry) return;
   const double seconds = number(*entry);
   if (!(std::abs(seconds) < 1))
-    yaml_fail(*entry, fmt::format("{:g}", seconds), "seconds from the first row to the last");
+    yaml_fail(*entry,
+              fmt::format("{:g}", seconds),
+              "seconds from the first row to the last, less than 1");
   camera.readout = readout_of(seconds);
   const auto sigma = find(root, "readout_sigma_s");
   if (!sigma) return;
   camera.readout->sigma_s = number(*sigma);
   if (!(camera.readout->sigma_s >= kAboveZero.least && camera.readout->sigma_s < 1))
-    yaml_fail(*sigma, fmt::format("{:g}", camera.readout->sigma_s), "seconds above 0");
+    yaml_fail(
+        *sigma, fmt::format("{:g}", camera.readout->sigma_s), "seconds above 0 and less than 1");
 }
 
 /// A camera model of Kalibr: its parameters before the focal lengths and the principal point.
