@@ -68,10 +68,10 @@ struct InitializeOptions {
 };
 
 /// Initializes from all frames of one window; bit-identical to `gpo-inspector run` for the same
-/// tracks. Rotations are by default those of the frames, else from the gyroscope if it has samples,
-/// else from the images. Tracks are taken to have noise in frame 0, too; if theirs is exact,
-/// because templates of frame 0 are aligned in all others, set `method_options.error` to
-/// `transfer`.
+/// tracks. Rotations are by default those of the frames, else from the gyroscope if its samples
+/// cover the window and fit the images, else from the images (`WindowResult::rotations_note`).
+/// Tracks are taken to have noise in frame 0, too; if theirs is exact, because templates of frame 0
+/// are aligned in all others, set `method_options.error` to `transfer`.
 WindowResult initialize(const Camera& camera,
                         std::span<const Frame> frames,
                         const Gyroscope* gyroscope = nullptr,

@@ -21,7 +21,8 @@ struct WindowResult {
   Initialization initialization;
   std::vector<std::int64_t> ids;  ///< ids of the window's tracks, indexed by `MapPoint::track`
   RotationSource rotations = RotationSource::gyro;  ///< the source used, never automatic
-  std::string rotations_note;                       ///< see `ChosenRotations::note`
+  /// Why the gyroscope is not used as given, or why the first choice of `automatic` failed.
+  std::string rotations_note;
   Window window;  ///< undistorted points, inliers, homographies, given rotations
   /// Gravity and metric scale; nullopt if the result is not ok or there are no accelerations.
   std::optional<InertialAlignment> inertial = std::nullopt;

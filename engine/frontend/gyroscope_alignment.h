@@ -83,7 +83,10 @@ struct GyroscopeCheck {
 
 /// Compares the rates with those of the images, for the recorded axes and clock, for other clocks
 /// (within 0.2 s) and for other axes. A misfit is reported if another clock (off by more than half
-/// a frame) or other axes fit far better, or if nothing explains the images.
-GyroscopeCheck check_gyroscope_against(const ImageRotations& window, const Gyroscope& gyroscope);
+/// a frame) or other axes fit far better, if the gyroscope rotates far less than the images, or if
+/// nothing explains the images. `sigma_rad` is the rough error of the images' rotations.
+GyroscopeCheck check_gyroscope_against(const ImageRotations& window,
+                                       const Gyroscope& gyroscope,
+                                       double sigma_rad);
 
 }  // namespace gpo

@@ -287,6 +287,7 @@ Rotations calibrated_gyro_rotations(const Gyroscope& gyroscope,
   rotations.gyro->prior_rad_s = gyroscope.bias_rad_s;
   rotations.gyro->bias_covariance = fitted.covariance;
   rotations.R_wc_images = std::move(visual.R_wc);
+  rotations.sigma_rad = visual.sigma_rad;
   return rotations;
 }
 

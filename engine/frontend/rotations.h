@@ -24,9 +24,9 @@ struct Rotations {
   std::string reason = "";
   RotationModel model = RotationModel::known;          ///< their uncertain parts
   std::optional<GyroSensitivity> gyro = std::nullopt;  ///< for rotations from a gyroscope
-  double sigma_rad = 0;                                ///< rough, of rotations from images
-  bool stopped = false;                                ///< there are none because of that
-  std::string note = "";                               ///< how an ambiguity was resolved, if any
+  double sigma_rad = 0;   ///< rough, of rotations from images (R_wc_images)
+  bool stopped = false;   ///< there are none because of that
+  std::string note = "";  ///< how an ambiguity was resolved, if any
   /// Rotations by images alone that calibrated a gyroscope, one per frame; empty for other sources.
   std::vector<Eigen::Matrix3d> R_wc_images = {};
 };

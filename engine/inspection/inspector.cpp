@@ -74,17 +74,12 @@ Watch watch_of(const Settings& settings, const std::stop_token& stop, const Prog
           }};
 }
 
-const Gyroscope* gyroscope_of(const Recording& recording, const WindowRotations& rotations) {
-  if (!recording.gyroscope || !rotations.gyroscope_is_usable) return nullptr;
-  return rotations.corrected ? &*rotations.corrected : &*recording.gyroscope;
-}
-
 Sources sources_of(const Recording& recording,
                    const Window& window,
                    const WindowRotations& rotations) {
   Sources sources;
   sources.camera = &recording.camera;
-  sources.gyroscope = gyroscope_of(recording, rotations);
+  sources.gyroscope = rotations.usable(recording.gyroscope ? &*recording.gyroscope : nullptr);
   sources.T_body_camera = recording.T_body_camera;
   const auto& files = recording.image_files;
   if (std::ssize(files) == recording.frame_count()) {

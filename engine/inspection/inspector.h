@@ -61,18 +61,9 @@ RotationSource rotation_source_used(const Recording& recording, RotationSource r
 /// averaging".
 std::string automatic_rotations(const Recording& recording);
 
-/// Rotations of a window, and whether its gyroscope may be used for more.
-struct WindowRotations {
-  ChosenRotations chosen;
-  std::optional<Gyroscope> corrected = std::nullopt;  ///< with the clock that fits the images
-  bool gyroscope_is_usable = true;                    ///< false: not for gravity and scale either
-  std::string note = "";                              ///< why one of these, for people
-};
-
-/// Returns `chosen_rotations` of a recording's window. `truth` may be null if it is not the source.
-/// Sources `automatic` and `raw` do without a gyroscope that does not cover the window; `automatic`
-/// also corrects a wrong clock and does without a gyroscope that does not fit the images. Throws
-/// InputError if the recording lacks the source, or gyroscope or truth do not cover the window.
+/// Returns `window_rotations` of a recording's window. `truth` may be null if it is not the source.
+/// Throws InputError if the recording lacks the source, or gyroscope or truth do not cover the
+/// window.
 WindowRotations window_rotations(const Recording& recording,
                                  const Window& window,
                                  const WindowTruth* truth,

@@ -1,7 +1,6 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/files/refuse.h"
-#include "engine/frontend/gyroscope_alignment.h"
 #include "engine/frontend/tracking/tracker.h"
 #include "engine/inspection/inspector.h"
 #include "engine/methods/recording_method.h"
@@ -37,12 +36,6 @@ std::vector<Eigen::Matrix3d> true_rotations(const WindowTruth* truth, int start)
   }
   if (R_wc.empty()) refuse_setting("rotations", "truth: the window has no ground truth");
   return R_wc;
-}
-
-std::string why_not_covered_by(const Gyroscope& gyroscope, const Window& window) {
-  const auto& times = window.timestamps_ns;
-  return why_not_covered(
-      gyroscope, times.front() + gyroscope.time_offset_ns, times.back() + gyroscope.time_offset_ns);
 }
 
 ClockReference clock_of_truth(const Recording& recording) {
@@ -194,43 +187,11 @@ WindowRotations window_rotations(const Recording& recording,
                                  const WindowTruth* truth,
                                  const InitializeOptions& options,
                                  const std::stop_token& stop) {
-  const RotationSource requested = options.rotations;
-  const RotationSource first = rotation_source_used(recording, requested);
+  const RotationSource first = rotation_source_used(recording, options.rotations);
   std::vector<Eigen::Matrix3d> R_wc_true;
   if (first == RotationSource::truth) R_wc_true = true_rotations(truth, window.start);
-  const auto choose = [&](const Gyroscope* gyroscope) {
-    return chosen_rotations(window, {gyroscope, R_wc_true, options.seed}, requested, stop);
-  };
-  const auto without_gyroscope = [&](const std::string& why) -> WindowRotations {
-    return {choose(nullptr), std::nullopt, false, "the gyroscope is not used" + why};
-  };
-  if (!recording.gyroscope) return {choose(nullptr)};
-  const Gyroscope& gyroscope = *recording.gyroscope;
-  const bool may_do_without =
-      requested == RotationSource::automatic || requested == RotationSource::raw;
-  const std::string gap = may_do_without ? why_not_covered_by(gyroscope, window) : "";
-  if (!gap.empty()) return without_gyroscope(": " + gap);
-  WindowRotations found{choose(&gyroscope)};
-  const Rotations& rotations = found.chosen.rotations;
-  if (requested != RotationSource::automatic || rotations.R_wc_images.empty()) return found;
-  const auto [misfit, late_s] =
-      check_gyroscope_against({window.timestamps_ns, rotations.R_wc_images}, gyroscope);
-  if (misfit.empty()) return found;
-  constexpr const char* kAdvice = "run `calibrate --gyroscope`";
-  if (late_s) {
-    Gyroscope corrected = gyroscope;
-    corrected.time_offset_ns += to_ns(*late_s);
-    if (why_not_covered_by(corrected, window).empty()) {
-      found.chosen = choose(&corrected);
-      found.corrected = std::move(corrected);
-      found.note =
-          fmt::format("the gyroscope does not fit the images: {}, corrected in this window; {}",
-                      misfit,
-                      kAdvice);
-      return found;
-    }
-  }
-  return without_gyroscope(fmt::format(", it does not fit the images: {}; {}", misfit, kAdvice));
+  const Gyroscope* gyroscope = recording.gyroscope ? &*recording.gyroscope : nullptr;
+  return window_rotations(window, {gyroscope, R_wc_true, options.seed}, options.rotations, stop);
 }
 
 RecordingFacts facts_for_results(const Recording& recording) {

@@ -37,9 +37,8 @@ std::string out_of_range(std::int64_t time_ns) {
   return fmt::format("time stamp {}, expected -4e18 to 4e18 ns", time_ns);
 }
 
-/// Returns the note with the reason why a gyroscope was not used.
-std::string without_samples(const std::string& note) {
-  return note.empty() ? kNoSamples : fmt::format("{}; {}", kNoSamples, note);
+std::string joined(const std::string& one, const std::string& other) {
+  return one + (one.empty() || other.empty() ? "" : "; ") + other;
 }
 
 bool is_rotation(const Eigen::Matrix3d& R) {
@@ -263,15 +262,17 @@ WindowResult initialize(const Camera& camera,
   for (const Frame& frame : frames) timestamps_ns.push_back(frame.timestamp_ns);
   Tracks tracks = select_tracks(observations_of(frames), 0, static_cast<int>(frames.size()));
   Window window = window_of(tracks, camera, timestamps_ns, options);
-  const ChosenRotations chosen =
-      chosen_rotations(window, {gyro, R_wc, options.seed}, requested, stop);
+  const WindowRotations rotations =
+      window_rotations(window, {gyro, R_wc, options.seed}, requested, stop);
+  const ChosenRotations& chosen = rotations.chosen;
 
   WindowResult result;
   result.ids = std::move(tracks.ids);
   result.rotations = chosen.source;
   const bool lacks_samples = gyroscope != nullptr && gyro == nullptr && R_wc.empty();
-  result.rotations_note = lacks_samples ? without_samples(chosen.note) : chosen.note;
+  result.rotations_note = joined(lacks_samples ? kNoSamples : rotations.note, chosen.note);
   result.window = with_rotations(std::move(window), chosen.rotations, options);
+  gyro = rotations.usable(gyro);
   const Sources sources{&camera, gyro, body_camera_of(gyro, options)};
   const std::string missing = missing_plane(result.window, options);
   Initialization found = missing.empty()

@@ -3,6 +3,7 @@
 #include "engine/pipeline/pipeline.h"
 
 #include "engine/base/error.h"
+#include "engine/frontend/gyroscope_alignment.h"
 #include "engine/frontend/inliers.h"
 #include "engine/frontend/readout_compensation.h"
 #include "engine/methods/certainty/growth.h"
@@ -51,6 +52,12 @@ ChosenRotations rotations_at_stamps(const Window& window,
   return chosen;
 }
 
+std::string why_not_covered_by(const Gyroscope& gyroscope, const Window& window) {
+  const auto& times = window.timestamps_ns;
+  return why_not_covered(
+      gyroscope, times.front() + gyroscope.time_offset_ns, times.back() + gyroscope.time_offset_ns);
+}
+
 /// Completes a result without verdict: with that of the whole window as it grew, or that there is
 /// no plane.
 void complete_verdict(const Window& window,
@@ -75,12 +82,15 @@ void complete_verdict(const Window& window,
   }
 }
 
-/// Replaces the advice to move farther: with a wrong lens no path determines the normal.
+/// Replaces the advice to move farther: with a wrong lens no path determines the normal. A guess is
+/// no typical calibration.
 void blame_guess(std::string& reason) {
-  constexpr std::string_view kMove = "use a longer camera path";
-  if (reason.ends_with(kMove))
-    reason.replace(
-        reason.size() - kMove.size(), kMove.size(), "the camera is a guess, calibrate it");
+  constexpr std::pair<std::string_view, std::string_view> kReplaced[] = {
+      {"use a longer camera path", "the camera is a guess, calibrate it"},
+      {"with a typical calibration", "because the camera is a guess"}};
+  for (const auto& [old, now] : kReplaced)
+    if (const auto at = reason.find(old); at != std::string::npos)
+      reason.replace(at, old.size(), now);
 }
 
 Initialization run(const Window& window,
@@ -195,6 +205,50 @@ ChosenRotations chosen_rotations(const Window& window,
     if (!refused && best) chosen = std::move(other);
   }
   return chosen;
+}
+
+const Gyroscope* WindowRotations::usable(const Gyroscope* given) const {
+  if (given == nullptr || !gyroscope_is_usable) return nullptr;
+  return corrected ? &*corrected : given;
+}
+
+WindowRotations window_rotations(const Window& window,
+                                 const RotationInputs& inputs,
+                                 RotationSource requested,
+                                 const std::stop_token& stop) {
+  using enum RotationSource;
+  const auto choose = [&](const Gyroscope* gyroscope) {
+    return chosen_rotations(window, {gyroscope, inputs.R_wc_true, inputs.seed}, requested, stop);
+  };
+  const auto without_gyroscope = [&](const std::string& why) -> WindowRotations {
+    return {choose(nullptr), std::nullopt, false, "the gyroscope is not used" + why};
+  };
+  if (inputs.gyroscope == nullptr) return {choose(nullptr)};
+  const Gyroscope& gyroscope = *inputs.gyroscope;
+  const bool may_do_without = requested == automatic || requested == raw;
+  const std::string gap = may_do_without ? why_not_covered_by(gyroscope, window) : "";
+  if (!gap.empty()) return without_gyroscope(": " + gap);
+  WindowRotations found{choose(&gyroscope)};
+  const Rotations& rotations = found.chosen.rotations;
+  if (requested != automatic || rotations.R_wc_images.empty()) return found;
+  const auto [misfit, late_s] = check_gyroscope_against(
+      {window.timestamps_ns, rotations.R_wc_images}, gyroscope, rotations.sigma_rad);
+  if (misfit.empty()) return found;
+  constexpr const char* kAdvice = "run `calibrate --gyroscope`";
+  if (late_s) {
+    Gyroscope corrected = gyroscope;
+    corrected.time_offset_ns += to_ns(*late_s);
+    if (why_not_covered_by(corrected, window).empty()) {
+      found.chosen = choose(&corrected);
+      found.corrected = std::move(corrected);
+      found.note =
+          fmt::format("the gyroscope does not fit the images: {}, corrected in this window; {}",
+                      misfit,
+                      kAdvice);
+      return found;
+    }
+  }
+  return without_gyroscope(fmt::format(", it does not fit the images: {}; {}", misfit, kAdvice));
 }
 
 Window with_rotations(Window window, const Rotations& rotations, const InitializeOptions& options) {

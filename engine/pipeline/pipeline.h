@@ -24,7 +24,7 @@ namespace gpo {
 
 // The stages from tracks to a verdict, in their order; each takes and returns plain values:
 //
-//   window_of, chosen_rotations, with_rotations, run_method, add_own_noise, growing_verdicts,
+//   window_of, window_rotations, with_rotations, run_method, add_own_noise, growing_verdicts,
 //   finished
 //
 // `initialize`, and with it the live `LiveInitializer`, runs them in a row. An Inspector runs the
@@ -79,6 +79,25 @@ RotationSource first_source(RotationSource requested, bool has_gyroscope);
 /// uncalibrated gyroscope if images cannot calibrate it, and to averaging if five-point rotations
 /// are ambiguous. Throws InputError if the gyroscope does not cover the window.
 ChosenRotations chosen_rotations(const Window& window,
+                                 const RotationInputs& inputs,
+                                 RotationSource requested,
+                                 const std::stop_token& stop);
+
+/// Rotations of a window, and whether its gyroscope may be used for more.
+struct WindowRotations {
+  ChosenRotations chosen;
+  std::optional<Gyroscope> corrected = std::nullopt;  ///< with the clock that fits the images
+  bool gyroscope_is_usable = true;                    ///< false: not for gravity and scale either
+  std::string note = "";                              ///< why one of these, for people
+
+  /// Returns the gyroscope to use in place of the given one, which may be null.
+  const Gyroscope* usable(const Gyroscope* given) const;
+};
+
+/// Returns `chosen_rotations`. Sources `automatic` and `raw` do without a gyroscope that does not
+/// cover the window. `automatic` also corrects a wrong clock, and does without a gyroscope that
+/// does not fit the images. Throws InputError as `chosen_rotations` does.
+WindowRotations window_rotations(const Window& window,
                                  const RotationInputs& inputs,
                                  RotationSource requested,
                                  const std::stop_token& stop);

@@ -46,6 +46,18 @@ Gyroscope gyroscope(double late_s, const Matrix3d& R_gyro_camera) {
   return made;
 }
 
+constexpr double kSigma_rad = 1e-4;  // error of the images' rotations
+
+GyroscopeCheck check(const ImageRotations& window, const Gyroscope& gyroscope) {
+  return check_gyroscope_against(window, gyroscope, kSigma_rad);
+}
+
+Gyroscope with_rates(double share) {
+  Gyroscope made = gyroscope(0, Matrix3d::Identity());
+  for (Vector3d& rate : made.rates_rad_s) rate *= share;
+  return made;
+}
+
 TEST(RateIntegral, CoversTheFirstAndTheLastSample) {
   Gyroscope gyroscope;
   for (const int k : {0, 1, 2, 3}) {
@@ -60,14 +72,13 @@ TEST(RateIntegral, CoversTheFirstAndTheLastSample) {
 }
 
 TEST(GyroscopeCheck, AcceptsAGyroscopeThatFits) {
-  EXPECT_EQ(check_gyroscope_against(images(), gyroscope(0, Matrix3d::Identity())).misfit, "");
-  EXPECT_EQ(check_gyroscope_against(images(), gyroscope(0.01, Matrix3d::Identity())).misfit, "");
+  EXPECT_EQ(check(images(), gyroscope(0, Matrix3d::Identity())).misfit, "");
+  EXPECT_EQ(check(images(), gyroscope(0.01, Matrix3d::Identity())).misfit, "");
 }
 
 TEST(GyroscopeCheck, MeasuresAClockThatIsOffByMoreThanHalfAFrame) {
   for (const double late_s : {0.03, -0.05, 0.1}) {
-    const auto [misfit, found_s] =
-        check_gyroscope_against(images(), gyroscope(late_s, Matrix3d::Identity()));
+    const auto [misfit, found_s] = check(images(), gyroscope(late_s, Matrix3d::Identity()));
     EXPECT_THAT(misfit, StartsWith("its clock is about "));
     ASSERT_TRUE(found_s) << late_s;
     EXPECT_NEAR(*found_s, late_s, 0.004);
@@ -76,15 +87,35 @@ TEST(GyroscopeCheck, MeasuresAClockThatIsOffByMoreThanHalfAFrame) {
 
 TEST(GyroscopeCheck, NamesWrongAxes) {
   const Matrix3d quarter = so3_exp({0, 0, M_PI / 2});
-  const auto check = check_gyroscope_against(images(), gyroscope(0, quarter));
-  EXPECT_EQ(check.misfit, "its axes are about 90 deg off");
-  EXPECT_FALSE(check.late_s);
+  const auto found = check(images(), gyroscope(0, quarter));
+  EXPECT_EQ(found.misfit, "its axes are about 90 deg off");
+  EXPECT_FALSE(found.late_s);
+}
+
+TEST(GyroscopeCheck, NamesOppositeAxesRatherThanAnotherClock) {
+  Gyroscope opposite = gyroscope(0, so3_exp({M_PI, 0, 0}));
+  EXPECT_EQ(check(images(), opposite).misfit, "its axes are about 180 deg off");
+}
+
+TEST(GyroscopeCheck, NamesRatesThatAreTooLow) {
+  for (const double share : {0.0, 1 / 57.3})
+    EXPECT_EQ(check(images(), with_rates(share)).misfit, "the images rotate, but it hardly does");
+  const GyroscopeCheck half = check(images(), with_rates(0.5));
+  EXPECT_THAT(half.misfit, testing::MatchesRegex("its rates are about 0.(49|50|51) of those.*"));
+  EXPECT_FALSE(half.late_s);
+  EXPECT_EQ(check(images(), with_rates(0.9)).misfit, "");
+}
+
+TEST(GyroscopeCheck, IgnoresAGyroscopeAtRestIfTheImagesAreUncertainOrAtRest) {
+  constexpr double kUnknown_rad = 0.05;
+  EXPECT_EQ(check_gyroscope_against(images(), with_rates(0), kUnknown_rad).misfit, "");
+  EXPECT_EQ(check(images(0.02), with_rates(0)).misfit, "");
 }
 
 TEST(GyroscopeCheck, NamesStabilizedImagesAndUnrelatedRates) {
-  EXPECT_EQ(check_gyroscope_against(images(0.2), gyroscope(0, Matrix3d::Identity())).misfit,
+  EXPECT_EQ(check(images(0.2), gyroscope(0, Matrix3d::Identity())).misfit,
             "the images rotate less than it does, as stabilized images do");
-  EXPECT_THAT(check_gyroscope_against(images(), gyroscope(20, Matrix3d::Identity())).misfit,
+  EXPECT_THAT(check(images(), gyroscope(20, Matrix3d::Identity())).misfit,
               StartsWith("their rates have a correlation of "));
 }
 

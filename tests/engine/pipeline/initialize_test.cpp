@@ -52,6 +52,37 @@ TEST(Initialize, GivesTheSameBitsAsAnInspection) {
   }
 }
 
+TEST(Initialize, UsesAGyroscopeThatDoesNotFitTheImagesAsAnInspectionDoes) {
+  const auto with = [](const std::function<void(Gyroscope&)>& change) {
+    auto recording = std::make_shared<Recording>(*desk());
+    change(*recording->gyroscope);
+    const InitializeOptions options{.method_options = {.error = ErrorModel::transfer}};
+    const auto inspection = Inspector(recording).inspect({.options = options});
+    const WindowResult result =
+        initialize(recording->camera, frames_of(*inspection), &*recording->gyroscope, options);
+    expect_same(*inspection->initialization, result.initialization);
+    EXPECT_EQ(inspection->inertial.has_value(), result.inertial.has_value());
+    EXPECT_THAT(result.rotations_note, StartsWith(inspection->gyroscope_note));
+    return result.rotations_note;
+  };
+  EXPECT_THAT(with([](Gyroscope& late) { late.time_offset_ns -= 50'000'000; }),
+              HasSubstr("its clock is about +50 ms off, corrected in this window"));
+  EXPECT_THAT(with([](Gyroscope& swapped) {
+                swapped.R_gyro_camera = swapped.R_gyro_camera * so3_exp({0, 0, M_PI / 2});
+              }),
+              HasSubstr("the gyroscope is not used, it does not fit the images"));
+  EXPECT_THAT(with([](Gyroscope& ending) {
+                const auto count =
+                    std::ranges::upper_bound(ending.timestamps_ns, desk()->timestamps_ns[15]) -
+                    ending.timestamps_ns.begin();
+                ending.timestamps_ns.resize(count);
+                ending.rates_rad_s.resize(count);
+                ending.lines.resize(count);
+                if (!ending.accelerations_m_s2.empty()) ending.accelerations_m_s2.resize(count);
+              }),
+              HasSubstr("the gyroscope ends at"));
+}
+
 WindowResult initialized(const Simulation& simulation, const InitializeOptions& options = {}) {
   return initialize(camera_of(simulation.window), frames_of(simulation.window), nullptr, options);
 }
@@ -285,9 +316,11 @@ TEST(Initialize, RejectsBadInputByName) {
             "rotations: truth: no rotations given");
   EXPECT_EQ(error_after([](auto& i) { i.gyroscope = two_samples(5, 5); }),
             "gyroscope: time stamp 5 does not come after 5");
-  EXPECT_THAT(
-      error_after([](auto& i) { i.gyroscope = two_samples(-9'000'000'000, -8'990'000'000); }),
-      HasSubstr("gyroscope:2: the gyroscope ends at"));
+  EXPECT_THAT(error_after([](auto& i) {
+                i.gyroscope = two_samples(-9'000'000'000, -8'990'000'000);
+                i.options.rotations = RotationSource::gyro;
+              }),
+              HasSubstr("gyroscope:2: the gyroscope ends at"));
 }
 
 TEST(Initialize, RejectsNumbersThatAreNotFiniteNegativeOrPriorsOfZero) {
