@@ -125,9 +125,17 @@ void add_held_gyro(const Sandwich& sandwich,
   moves.bottomRows(size).setIdentity();
   spread.shared += moves * held.covariance * moves.transpose();
   result.late_s = held.late_s;
-  if (held.late_s)
-    result.clock_sigma_deg =
-        degrees(std::sqrt(held.covariance(3, 3)) * moves.col(moves.cols() - 1).head<2>().norm());
+  if (!held.late_s) return;
+  const Eigen::Matrix<double, 2, 3> by_bias = moves.topLeftCorner<2, 3>();
+  const auto of_bias = [&](const Matrix3d& covariance) {
+    return (by_bias * covariance * by_bias.transpose()).trace();
+  };
+  const double stated = of_bias(sandwich.solved.window.gyro->bias_covariance);
+  double by_clock = held.covariance(3, 3) * moves.col(3).head<2>().squaredNorm();
+  // Such a clock is also why the tracks contradict the bias.
+  if (by_clock > stated)
+    by_clock += std::max(0.0, of_bias(held.covariance.topLeftCorner<3, 3>()) - stated);
+  result.clock_sigma_deg = degrees(std::sqrt(by_clock));
 }
 
 void set_typical_lens(const Sandwich& sandwich, Errors errors, Uncertainty& result) {

@@ -14,11 +14,14 @@ using testing::HasSubstr, testing::Not;
 
 using Change = std::function<void(Gyroscope&)>;
 
-std::shared_ptr<const Inspection> inspected(const Change& change, RotationSource source) {
+std::shared_ptr<const Inspection> inspected(const Change& change,
+                                            RotationSource source,
+                                            const char* method = "gpo_joint") {
   auto recording = std::make_shared<Recording>(*desk());
   change(*recording->gyroscope);
   Settings settings;
   settings.options.rotations = source;
+  settings.options.method = method;
   return Inspector(std::move(recording)).inspect(settings);
 }
 
@@ -72,6 +75,32 @@ TEST(GyroscopeUse, WrongAxesCostTheGyroscope) {
   EXPECT_THAT(found->gyroscope_note,
               HasSubstr("the gyroscope is not used, it does not fit the images: "));
   EXPECT_FALSE(found->inertial);
+}
+
+TEST(GyroscopeUse, ADeadGyroscopeIsNotUsed) {
+  const auto found = inspected(
+      [](Gyroscope& gyroscope) {
+        for (Eigen::Vector3d& rate : gyroscope.rates_rad_s) rate.setZero();
+      },
+      RotationSource::automatic,
+      "gpo");
+  EXPECT_THAT(
+      found->gyroscope_note,
+      HasSubstr("the gyroscope is not used, it does not fit the images: the images rotate"));
+  EXPECT_EQ(found->initialization->verdict->readiness, Readiness::ready);
+}
+
+TEST(GyroscopeUse, AClockThatIsOffByUpToHalfAFrameIsTheReasonOfAWeakVerdict) {
+  for (const int late_ms : {13, 15, -13, -15}) {
+    const auto shift = [&](Gyroscope& gyroscope) {
+      gyroscope.time_offset_ns -= 1'000'000LL * late_ms;
+    };
+    const auto found = inspected(shift, RotationSource::automatic, "gpo");
+    EXPECT_EQ(found->gyroscope_note, "");
+    EXPECT_THAT(found->initialization->verdict->reason,
+                HasSubstr("the clock of the gyroscope is about "))
+        << late_ms;
+  }
 }
 
 }  // namespace
