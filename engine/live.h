@@ -66,8 +66,9 @@ class LiveInitializer {
                const Eigen::Vector3d& acceleration_m_s2);
   /// Adds a frame. If there is a gyroscope, a frame waits until samples cover it, and joins the
   /// window with a later call; at most for half a second, or `most_frames`. A window that samples
-  /// cover only in part ends, and a new one starts, with the `reason`. Without any samples in the
-  /// window the images determine the rotations (`rotations_note`). A frame that would start a new
+  /// cover only in part ends, and a new one starts, with the `reason`; if it is ready, its answer
+  /// is final, and later frames are ignored. Without any samples in the window the images determine
+  /// the rotations (`rotations_note`). A frame that would start a new
   /// window also waits while the window before it is being solved. An error of the method is a
   /// `reason`, too. Throws InputError for a bad frame only.
   LiveStatus add_frame(const Frame& frame);

@@ -178,7 +178,7 @@ bool LiveInitializer::Impl::admit(bool is_new) {
   }
   if (progress.status.ready) {
     closed = !covered.reason.empty();
-    if (closed) progress.status.reason = covered.reason;
+    if (closed) progress.status.reason = "the window ended, its answer is final: " + covered.reason;
   } else if (const std::string why =
                  covered.reason.empty() ? why_restart(step.seen) : covered.reason;
              !why.empty()) {

@@ -153,6 +153,7 @@ TEST(LiveInitializerSamples, KeepTheAnswerIfAGapFollows) {
   EXPECT_TRUE(last.ready);
   EXPECT_EQ(last.reference, 0);
   EXPECT_LT(last.frames, 29);
+  EXPECT_THAT(last.reason, HasSubstr("its answer is final: "));
   EXPECT_THAT(last.reason, HasSubstr("gap of 0.3"));
 }
 
