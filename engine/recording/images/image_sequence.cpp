@@ -7,8 +7,10 @@
 
 #include <algorithm>
 #include <cctype>
+#include <chrono>
 #include <cmath>
 #include <limits>
+#include <regex>
 #include <set>
 
 #include <fmt/ranges.h>
@@ -97,17 +99,18 @@ ImageSequence sequence_in(const fs::path& folder) {
     groups[parts.pattern].push_back(file);
     if (!parts.numbers.empty()) numbers[parts.pattern].insert(parts.numbers.front());
   }
-  std::vector<std::pair<Rank, std::string>> order;
+  std::vector<std::tuple<Rank, std::ptrdiff_t, std::string>> order;  // longest first within a rank
   for (const auto& [pattern, files] : groups)
-    order.emplace_back(rank_of(parts_of(files.front()).words), pattern);
+    order.emplace_back(rank_of(parts_of(files.front()).words), -std::ssize(files), pattern);
   std::ranges::sort(order);
   std::set<std::string> taken;
-  for (const auto& [rank, pattern] : order) {
+  for (const auto& [rank, count, pattern] : order) {
     const auto& files = groups[pattern];
     const auto twice = [&](const std::string& number) { return taken.contains(number); };
     const bool same = std::ranges::any_of(numbers[pattern], twice);
     if (rank == Rank::depth || same || (rank != Rank::camera && !found.files.empty())) {
-      found.others.push_back(other_sequence(files, rank));
+      auto& others = rank == Rank::camera ? found.left_out : found.others;
+      others.push_back(other_sequence(files, rank));
       continue;
     }
     found.files.insert(found.files.end(), files.begin(), files.end());
@@ -118,7 +121,8 @@ ImageSequence sequence_in(const fs::path& folder) {
     found.files = numbered_images(folder);  // in the order of the numbers
     std::erase_if(found.files, [&](const fs::path& file) { return !kept.contains(file); });
   }
-  found.unreadable = unreadable_among(found.files, folder);
+  const auto unreadable = unreadable_among(found.files, folder);
+  found.left_out.insert(found.left_out.end(), unreadable.begin(), unreadable.end());
   return found;
 }
 
@@ -136,16 +140,50 @@ Words usual_subfolders(const fs::path& folder) {
   return names;
 }
 
-/// A time and the number of digits behind its decimal point.
+/// A time in the name of a file.
 struct NamedTime {
   std::int64_t whole = 0;
-  std::string decimals;  ///< empty: a whole number
+  std::string decimals;  ///< digits behind the decimal point; empty: a whole number
   bool pair = false;     ///< "SEC_NSEC"
+  bool clock = false;    ///< hours, minutes and seconds
+  std::string before;    ///< the name up to the time
 };
 
-/// Reads the last number of a name, or its last two as "SEC.DECIMALS" or "SEC_NSEC".
+/// Reads a date with hours, minutes and seconds ("20240131_120059933", "2024-01-31_12-00-59.933");
+/// without a date these need separators and decimals ("12_00_59.933000").
+std::optional<NamedTime> clock_time(const std::string& stem) {
+  static const std::regex kForm(
+      R"((?:.*?\D)??(?:((?:19|20)\d\d)([-_.]?)(\d\d)\2(\d\d)[-_T. ]{0,3})?)"
+      R"((\d\d)([-_.:]?)(\d\d)\6(\d\d)(?:([-_.,]?)(\d+))?\D*)");
+  std::smatch parts;
+  if (!std::regex_match(stem, parts, kForm)) return std::nullopt;
+  const bool dated = parts[1].matched;
+  const bool point = parts[9] == "." || parts[9] == ",";
+  if (parts.length(10) % 3 != 0 && !(dated && point)) return std::nullopt;
+  if (!dated && (parts.length(6) == 0 || parts.length(9) == 0)) return std::nullopt;
+  const auto number = [&](int part) {
+    return static_cast<int>(parse_integer(parts[part].str()).value_or(0));
+  };
+  constexpr int kHours = 24, kMinutes = 60, kSeconds = 60;
+  if (number(5) >= kHours || number(7) >= kMinutes || number(8) >= kSeconds) return std::nullopt;
+  std::chrono::sys_days day{};
+  if (dated) {
+    const auto date = std::chrono::year(number(1)) / number(3) / number(4);
+    if (!date.ok()) return std::nullopt;
+    day = date;
+  }
+  const auto time = day + std::chrono::hours(number(5)) + std::chrono::minutes(number(7)) +
+                    std::chrono::seconds(number(8));
+  std::string decimals = parts[10];
+  decimals.resize(9, '0');
+  return NamedTime{time.time_since_epoch().count(), decimals, false, true, ""};
+}
+
+/// Reads a clock's time, the last number of a name, or its last two as "SEC.DECIMALS" or
+/// "SEC_NSEC".
 std::optional<NamedTime> named_time(const fs::path& file) {
   const std::string stem = file.stem().string();
+  if (const auto time = clock_time(stem)) return time;
   const auto number_before = [&](std::size_t end) {
     std::size_t begin = end;
     while (begin > 0 && is_digit_char(stem[begin - 1])) --begin;
@@ -162,10 +200,11 @@ std::optional<NamedTime> named_time(const fs::path& file) {
     const bool dot = stem[begin - 1] == '.';
     constexpr std::int64_t kLeast_s = 1'000'000'000, kMost_s = 4'000'000'000;  // 2001 to 2096
     if (seconds && *seconds <= kMost_s && (dot || *seconds >= kLeast_s))
-      return NamedTime{*seconds, last, !dot};
+      return NamedTime{*seconds, last, !dot, false, stem.substr(0, first)};
   }
   const auto whole = parse_integer(last);
-  return whole ? std::optional(NamedTime{*whole, "", false}) : std::nullopt;
+  if (!whole) return std::nullopt;
+  return NamedTime{*whole, "", false, false, stem.substr(0, begin)};
 }
 
 /// Returns whether 64 bits can store the last of the numbers in nanoseconds.
@@ -230,6 +269,28 @@ std::int64_t nanoseconds(const NamedTime& time, std::int64_t unit, bool padded) 
   return time.whole * kSecond + parse_integer(decimals).value_or(0);
 }
 
+/// Returns the times of all names; empty if one has none or another form.
+std::vector<NamedTime> named_times(const std::vector<fs::path>& files) {
+  std::vector<NamedTime> times;
+  for (const fs::path& file : files) {
+    const auto time = named_time(file);
+    const bool alike =
+        time && (times.empty() || (time->decimals.empty() == times[0].decimals.empty() &&
+                                   time->pair == times[0].pair && time->clock == times[0].clock));
+    if (!alike) return {};
+    times.push_back(*time);
+  }
+  return times;
+}
+
+const char* unit_name(const NamedTime& time, std::int64_t unit) {
+  if (time.clock) return "hours, minutes and seconds";
+  if (time.pair) return "seconds and nanoseconds";
+  if (!time.decimals.empty()) return "seconds";
+  if (unit == 1) return "nanoseconds";
+  return unit == 1000 ? "microseconds" : "milliseconds";
+}
+
 }  // namespace
 
 ImageSequence find_image_sequence(const fs::path& folder) {
@@ -240,7 +301,7 @@ ImageSequence find_image_sequence(const fs::path& folder) {
     ImageSequence inner = sequence_in(folder / name);
     if (found.files.empty()) {
       found.files = inner.files;
-      found.unreadable = inner.unreadable;
+      found.left_out = inner.left_out;
     } else if (!inner.files.empty()) {
       found.others.push_back(other_sequence(inner.files, Rank::second));
     }
@@ -256,30 +317,23 @@ ImageSequence find_image_sequence(const fs::path& folder) {
   return found;
 }
 
-void report_unreadable(Recording& recording, const std::vector<FoundFile>& unreadable) {
+void report_left_out(Recording& recording, const std::vector<FoundFile>& left_out) {
   constexpr std::size_t kShown = 3;
-  if (unreadable.empty()) return;
+  if (left_out.empty()) return;
   std::vector<std::string> texts;
-  for (std::size_t i = 0; i < std::min(kShown, unreadable.size()); ++i)
+  for (std::size_t i = 0; i < std::min(kShown, left_out.size()); ++i)
     texts.push_back(
-        fmt::format("{} ({})", unreadable[i].file.filename().string(), unreadable[i].reason));
-  if (unreadable.size() > kShown)
-    texts.push_back(fmt::format("{} more names of images", unreadable.size() - kShown));
+        fmt::format("{} ({})", left_out[i].file.filename().string(), left_out[i].reason));
+  if (left_out.size() > kShown)
+    texts.push_back(fmt::format("{} more names of images", left_out.size() - kShown));
   recording.notes.push_back(fmt::format("not read: {}", fmt::join(texts, ", ")));
-  recording.files.insert(recording.files.end(), unreadable.begin(), unreadable.end());
+  recording.files.insert(recording.files.end(), left_out.begin(), left_out.end());
 }
 
 std::optional<TimesInNames> times_in_names(std::vector<fs::path>& files) {
   if (files.size() < 2) return std::nullopt;
-  std::vector<NamedTime> times;
-  for (const fs::path& file : files) {
-    const auto time = named_time(file);
-    const bool alike =
-        time && (times.empty() || (time->decimals.empty() == times[0].decimals.empty() &&
-                                   time->pair == times[0].pair));
-    if (!alike) return std::nullopt;
-    times.push_back(*time);
-  }
+  const std::vector<NamedTime> times = named_times(files);
+  if (times.empty()) return std::nullopt;
   const NamedTime& first = times.front();
   const bool decimals = !first.decimals.empty();
   // Milli-, micro- or nanoseconds with leading zeros; otherwise nanoseconds without them.
@@ -295,18 +349,23 @@ std::optional<TimesInNames> times_in_names(std::vector<fs::path>& files) {
   for (std::size_t i = 0; i < files.size(); ++i)
     sorted.emplace_back(nanoseconds(times[i], unit, padded), files[i]);
   std::ranges::sort(sorted);
-  TimesInNames found{.times_ns = {},
-                     .unit = first.pair     ? "seconds and nanoseconds"
-                             : decimals     ? "seconds"
-                             : unit == 1    ? "nanoseconds"
-                             : unit == 1000 ? "microseconds"
-                                            : "milliseconds"};
+  TimesInNames found{.times_ns = {}, .unit = unit_name(first, unit)};
   for (const auto& [time, file] : sorted) found.times_ns.push_back(time);
   const auto& ns = found.times_ns;
   const bool ascending = std::ranges::adjacent_find(ns, std::greater_equal<>()) == ns.end();
   const double hz = ascending ? 1e9 / static_cast<double>(median_period_ns(ns)) : 0;
-  if (!(hz > 0.05 && hz < 2000)) return std::nullopt;
-  for (std::size_t i = 0; i < files.size(); ++i) files[i] = sorted[i].second;
+  // Numbers of frames after a date look like whole seconds, those of photos within a second like
+  // milliseconds.
+  constexpr std::int64_t kSecond_ns = 1'000'000'000;
+  const auto is_whole = [&](std::int64_t time_ns) { return time_ns % kSecond_ns == 0; };
+  if (first.clock && std::ranges::all_of(ns, is_whole)) return std::nullopt;
+  if (!(hz > 0.05 && hz < (first.clock ? 500 : 2000))) return std::nullopt;
+  // A number that begins anew when another one before it grows is no time.
+  const bool same_text =
+      std::ranges::adjacent_find(times, std::not_equal_to(), &NamedTime::before) == times.end();
+  const auto file_of = [](const auto& one) { return one.second; };
+  if (!same_text && !std::ranges::equal(sorted, files, {}, file_of)) return std::nullopt;
+  std::ranges::transform(sorted, files.begin(), file_of);
   return found;
 }
 

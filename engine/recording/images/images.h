@@ -88,17 +88,17 @@ std::vector<FoundFile> unreadable_images(const fs::path& folder);
 
 /// Numbered images of one camera and, in the same place, other sequences.
 struct ImageSequence {
-  std::vector<fs::path> files;        ///< in the order of their numbers; empty: none
-  std::vector<FoundFile> others;      ///< the first image of each sequence that is not read
-  std::vector<FoundFile> unreadable;  ///< see `unreadable_images`
+  std::vector<fs::path> files;      ///< in the order of their numbers; empty: none
+  std::vector<FoundFile> others;    ///< the first image of each sequence of another sensor
+  std::vector<FoundFile> left_out;  ///< the same of further sequences; `unreadable_images`
 };
 
 /// Finds the color or gray images in a folder or in its usual subfolders. Never returns depth,
 /// masks and the like, which their names tell.
 ImageSequence find_image_sequence(const fs::path& folder);
 
-/// Adds images that cannot be read to the recording's files, and one note that names them.
-void report_unreadable(Recording& recording, const std::vector<FoundFile>& unreadable);
+/// Adds images that were not read to the recording's files, and one note that names them.
+void report_left_out(Recording& recording, const std::vector<FoundFile>& left_out);
 
 /// Times that all file names contain, and their unit for people.
 struct TimesInNames {
@@ -106,8 +106,9 @@ struct TimesInNames {
   const char* unit = "";
 };
 
-/// Recognizes seconds with decimals, milli-, micro- and nanoseconds, and SEC_NSEC; nullopt unless
-/// the times of all names ascend at the rate of a camera. `files` is sorted by time.
+/// Recognizes seconds with decimals, milli-, micro- and nanoseconds, SEC_NSEC, and hours, minutes
+/// and seconds with or without a date; nullopt unless the times of all names ascend at the rate of
+/// a camera. `files` is sorted by time.
 std::optional<TimesInNames> times_in_names(std::vector<fs::path>& files);
 
 /// Times of a video's frames, in units of `unit_s` and ascending.

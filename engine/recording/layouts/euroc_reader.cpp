@@ -53,7 +53,7 @@ ImageList read_image_list(const fs::path& folder) {
 
 void add_images(Recording& recording, ImageList list, const OpenOptions& options) {
   recording.timestamps_ns = std::move(list.timestamps_ns);
-  report_unreadable(recording, list.unreadable);
+  report_left_out(recording, list.unreadable);
   const auto missing = std::ranges::find_if_not(list.files, is_file);
   if (missing == list.files.end()) {
     add_image_files(recording, list.files, options.cache_bytes);

@@ -211,7 +211,7 @@ Recording read_images(const fs::path& path, const OpenOptions& options) {
   const Calibration calibration = calibration_of(folder, sequence, log, tracks.has_value(), search);
   report_calibration(recording, search, calibration);
   recording.files.insert(recording.files.end(), sequence.others.begin(), sequence.others.end());
-  report_unreadable(recording, sequence.unreadable);
+  report_left_out(recording, sequence.left_out);
   const fs::path calibration_file = search.file.value_or(folder / "camera.yaml");
   const std::string name = calibration_file.filename().string();
   recording.camera = calibration.camera;

@@ -48,6 +48,33 @@ TEST(TimesInNames, AreReadInAllUnits) {
   }
 }
 
+TEST(TimesInNames, AreThoseOfAClockAlsoAcrossAMinute) {
+  constexpr std::int64_t kNoon_ns = 1'706'702'400'000'000'000;  // 2024-01-31 12:00
+  constexpr std::int64_t kOfDay_ns = 43'200'000'000'000;
+  for (const auto& [first, second, noon_ns] :
+       {std::tuple("2024-01-31_12-00-59.933.jpg", "2024-01-31_12-01-00.000.jpg", kNoon_ns),
+        {"2024-01-31T12:00:59.933Z.jpg", "2024-01-31T12:01:00Z.jpg", kNoon_ns},
+        {"20240131_120059933.jpg", "20240131_120100000.jpg", kNoon_ns},
+        {"IMG_20240131120059933.jpg", "IMG_20240131120100000.jpg", kNoon_ns},
+        {"cam12_20240131-120059-933.jpg", "cam12_20240131-120100-000.jpg", kNoon_ns},
+        {"12_00_59.933000.jpg", "12_01_00.000000.jpg", kOfDay_ns}}) {
+    std::vector<std::filesystem::path> files = {first, second};
+    const auto found = times_in_names(files);
+    ASSERT_TRUE(found) << first;
+    EXPECT_THAT(found->times_ns, ElementsAre(noon_ns + 59'933'000'000, noon_ns + 60'000'000'000));
+    EXPECT_STREQ(found->unit, "hours, minutes and seconds");
+    EXPECT_THAT(files, ElementsAre(first, second));
+  }
+}
+
+TEST(TimesInNames, NeverChangeTheOrderIfAnotherNumberPrecedesThem) {
+  std::vector<std::filesystem::path> files = {
+      "run1-58.900.png", "run1-59.933.png", "run2-00.000.png", "run2-00.033.png"};
+  const auto given = files;
+  EXPECT_FALSE(times_in_names(files));
+  EXPECT_EQ(files, given);
+}
+
 TEST(TimesInNames, CountFromZeroIfTheirStepsAreRounded) {
   using Files = std::vector<std::filesystem::path>;
   for (const auto& [unit, names] :
@@ -64,10 +91,15 @@ TEST(TimesInNames, CountFromZeroIfTheirStepsAreRounded) {
 }
 
 TEST(TimesInNames, AreNotReadFromNumbersOfFrames) {
-  for (const auto& [first, second] : {std::pair("frame_000001.png", "frame_000002.png"),
-                                      {"IMG_2041.JPG", "IMG_2047.JPG"},
-                                      {"IMG_20240101_120000123.jpg", "IMG_20240101_120005123.jpg"},
-                                      {"30.png", "60.png"}}) {
+  for (const auto& [first, second] :
+       {std::pair("frame_000001.png", "frame_000002.png"),
+        {"IMG_2041.JPG", "IMG_2047.JPG"},
+        {"IMG_20240101_120000.jpg", "IMG_20240101_120000_1.jpg"},
+        {"IMG_20240101_120000_001.jpg", "IMG_20240101_120000_002.jpg"},
+        {"IMG_20241301_120000123.jpg", "IMG_20241301_120005123.jpg"},
+        {"20240101_000001.png", "20240101_000002.png"},
+        {"10_20_30.png", "10_20_31.png"},
+        {"30.png", "60.png"}}) {
     std::vector<std::filesystem::path> files = {first, second};
     EXPECT_FALSE(times_in_names(files)) << first;
   }

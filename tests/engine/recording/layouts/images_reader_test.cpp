@@ -102,6 +102,15 @@ TEST_F(ImagesReader, SortsImagesByTheirNumbers) {
 }
 
 TEST_F(ImagesReader, ScalesImagesOf16BitsAlikeAlsoIfTheFirstIsDark) {
+TEST_F(ImagesReader, PrefersTheLongerSequenceAndNamesTheOther) {
+  write_images(3);
+  for (const char* copy : {"img0 (1).png", "img1 (1).png"}) folder.write(copy, numbered(99));
+  const auto recording = open();
+  ASSERT_EQ(recording->frame_count(), 3);
+  EXPECT_EQ(number_of(recording->images->bgr(1)), 1);
+  EXPECT_THAT(recording->notes, Contains("not read: img0 (1).png (2 images: another sequence)"));
+}
+
   for (int i = 0; i < 12; ++i)
     folder.write(std::to_string(i) + ".tiff",
                  cv::Mat(48, 64, CV_16UC1, cv::Scalar::all(i == 0 ? 500 : 2000 + 100 * i)));
