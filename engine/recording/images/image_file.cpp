@@ -34,29 +34,6 @@ const LateFunction<cv::Mat(cv::InputArray, int), find_in_imgcodecs> opencv_imdec
 unsigned byte_at(Bytes bytes, std::size_t i) { return static_cast<unsigned char>(bytes[i]); }
 bool is_digit(Bytes bytes, std::size_t i) { return std::isdigit(byte_at(bytes, i)) != 0; }
 
-/// Walks through the segments of a JPEG, whose thumbnail has an end marker, too.
-bool is_whole_jpeg(Bytes bytes) {
-  std::size_t i = 2;
-  while (i + 1 < bytes.size()) {
-    if (byte_at(bytes, i) != 0xFF) {  // entropy-coded data
-      i = bytes.find('\xFF', i);
-      if (i == Bytes::npos) return false;
-      continue;
-    }
-    const unsigned marker = byte_at(bytes, i + 1);
-    if (marker == 0xD9) return true;
-    if (marker == 0xFF) {
-      i += 1;
-    } else if (marker <= 0x01 || (marker >= 0xD0 && marker <= 0xD8)) {  // stuffing, restart
-      i += 2;
-    } else {
-      if (i + 3 >= bytes.size()) return false;
-      i += 2 + big_endian(bytes, i + 2, 2);
-    }
-  }
-  return false;
-}
-
 struct PngChunk {
   Bytes kind;
   Bytes all;  ///< with its length and checksum
@@ -311,6 +288,29 @@ cv::Mat decode_image(std::string_view bytes, const std::string& name) {
   if (image.empty() || image.depth() > CV_16U || image.depth() == CV_8S)
     refuse(name, kUnknownFormat);
   return image;
+}
+
+/// Walks through the segments of a JPEG, whose thumbnail has an end marker, too.
+bool is_whole_jpeg(Bytes bytes) {
+  std::size_t i = 2;
+  while (i + 1 < bytes.size()) {
+    if (byte_at(bytes, i) != 0xFF) {  // entropy-coded data
+      i = bytes.find('\xFF', i);
+      if (i == Bytes::npos) return false;
+      continue;
+    }
+    const unsigned marker = byte_at(bytes, i + 1);
+    if (marker == 0xD9) return true;
+    if (marker == 0xFF) {
+      i += 1;
+    } else if (marker <= 0x01 || (marker >= 0xD0 && marker <= 0xD8)) {  // stuffing, restart
+      i += 2;
+    } else {
+      if (i + 3 >= bytes.size()) return false;
+      i += 2 + big_endian(bytes, i + 2, 2);
+    }
+  }
+  return false;
 }
 
 std::optional<ImageHeader> read_image_header(std::string_view bytes) {

@@ -18,6 +18,9 @@ cv::Mat read_image(const fs::path& file);
 /// The same from the file's bytes; `name` replaces the file in messages.
 cv::Mat decode_image(std::string_view bytes, const std::string& name);
 
+/// Returns whether a JPEG has its end marker.
+bool is_whole_jpeg(std::string_view bytes);
+
 /// Returns the image with one channel if its three are equal.
 cv::Mat gray_if_gray(const cv::Mat& bgr);
 

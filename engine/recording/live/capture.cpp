@@ -59,6 +59,8 @@ void Capture::push(TimedImage image, int broken) {
     status_.size = image.bgr.size();
     status_.state = CaptureState::running;
     status_.message.clear();
+    // A stream that is joined begins with images that cannot be decoded.
+    if (status_.captured > 0) status_.dropped += std::max(0, broken - status_.broken);
     status_.broken = broken;
     ++status_.captured;
     queue_.push_back({std::move(image.bgr), image.timestamp_ns, segment_, last_image_ns_});

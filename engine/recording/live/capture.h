@@ -28,7 +28,7 @@ struct CaptureStatus {
   std::string device = {};   ///< see `OpenSource`; empty until connected
   cv::Size size = {};        ///< size of the last image [px]; empty before the first
   int captured = 0;          ///< images, including the dropped ones
-  int dropped = 0;           ///< images that were not taken in time
+  int dropped = 0;           ///< images that were not taken in time, or were damaged
   int broken = 0;            ///< parts of the data that were skipped because they are damaged
 
   bool is_over() const { return state == CaptureState::ended || state == CaptureState::failed; }

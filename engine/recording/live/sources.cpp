@@ -75,10 +75,13 @@ OpenSource open_player(const SourceAddress& address, const SourceContext& contex
 std::int64_t CaptureTimes::next(std::int64_t arrival_ns,
                                 const std::optional<std::int64_t>& sender_ns) {
   std::int64_t time_ns = arrival_ns;
+  if (last_ns_) time_ns = std::max(time_ns, *last_ns_ + 1);
   if (sender_ns) {
-    const auto apart = [&] { return std::abs(*sender_ns + *offset_ns_ - arrival_ns); };
-    if (!offset_ns_ || apart() > kMostApart_ns) offset_ns_ = arrival_ns - *sender_ns;
-    time_ns = *sender_ns + *offset_ns_;
+    const bool jumped = !last_sender_ns_ || *sender_ns < *last_sender_ns_ ||
+                        std::abs(*sender_ns + offset_ns_ - arrival_ns) > kMostApart_ns;
+    if (jumped) offset_ns_ = time_ns - *sender_ns;
+    time_ns = *sender_ns + offset_ns_;
+    last_sender_ns_ = sender_ns;
   }
   if (last_ns_) time_ns = std::max(time_ns, *last_ns_ + 1);
   last_ns_ = time_ns;

@@ -102,7 +102,7 @@ std::vector<CameraDevice> list_cameras();
 std::string camera_error(const std::string& address, int error);
 
 /// Times of a stream's images: as captured by the sender's clock, moved to ours when the stream
-/// begins, or after it jumped.
+/// begins, and again when it jumps back or away from ours.
 class CaptureTimes {
  public:
   /// `sender_ns`: the sender's time; nullopt if unknown. Returns a time later than the last one.
@@ -110,7 +110,8 @@ class CaptureTimes {
 
  private:
   static constexpr std::int64_t kMostApart_ns = 5'000'000'000;
-  std::optional<std::int64_t> offset_ns_;  ///< our time - the sender's
+  std::int64_t offset_ns_ = 0;  ///< our time - the sender's
+  std::optional<std::int64_t> last_sender_ns_;
   std::optional<std::int64_t> last_ns_;
 };
 

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Cameras by libavdevice and streams by libavformat.
 #include "engine/files/refuse.h"
+#include "engine/recording/images/images.h"
 #include "engine/recording/images/libav.h"
 #include "engine/recording/live/sources.h"
 
@@ -104,10 +105,20 @@ class LiveInput {
       if (error == AVERROR(ENODEV)) refuse_source("was unplugged");
       is_at_end_ = error < 0;
       if (!is_at_end_ && packet_->stream_index != stream_->index) continue;
+      if (!is_at_end_ && is_cut_jpeg()) {
+        ++broken_;
+        continue;
+      }
       const AVPacket* const sent = is_at_end_ ? nullptr : packet_.get();
       if (libav::avcodec_send_packet(codec_.get(), sent) < 0 && !is_at_end_) ++broken_;
       return true;
     }
+  }
+
+  /// The decoder would fill up a truncated JPEG without a report.
+  bool is_cut_jpeg() const {
+    const char* bytes = reinterpret_cast<const char*>(packet_->data);
+    return !has_times_ && !is_whole_jpeg({bytes, static_cast<std::size_t>(packet_->size)});
   }
 
   std::optional<TimedImage> image_of_frame() {
