@@ -295,7 +295,13 @@ std::vector<std::int64_t> csv_time_stamps(const CsvTable& table, TimeUnit otherw
     const auto time = parse_decimal(cell, decimals);
     if (!time)
       csv_fail(table, row.line, in_quotes(cell), "a time stamp" + separator_text(table, cell));
-    if (!times.empty() && *time <= times.back())
+    const bool ascends = times.empty() || *time > times.back();
+    if (!ascends && decimals == 0 && cell.find('.') != std::string_view::npos)
+      csv_fail(table,
+               row.line,
+               fmt::format("time stamp {}, in seconds", cell.substr(0, kLongestShown)),
+               "nanoseconds");
+    if (!ascends)
       csv_fail(table,
                row.line,
                fmt::format("time stamp {}, {} the previous one",

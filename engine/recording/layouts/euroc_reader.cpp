@@ -5,6 +5,7 @@
 #include "engine/recording/companions/companion_files.h"
 #include "engine/recording/images/images.h"
 #include "engine/recording/layouts/open_recording.h"
+#include "engine/window/timestamps.h"
 
 #include <algorithm>
 
@@ -17,6 +18,22 @@ struct ImageList {
   std::vector<FoundFile> unreadable;
   std::optional<CsvTable> table;
 };
+
+constexpr double kHighestFrameRate_hz = 2000;
+constexpr double kHighestSampleRate_hz = 20'000;
+
+/// Throws InputError if nanoseconds would mean a higher rate than that of any sensor.
+void check_unit(const fs::path& file, const std::vector<std::int64_t>& times_ns, double most_hz) {
+  const std::int64_t step_ns = median_period_ns(times_ns);
+  if (rate_hz(times_ns) <= most_hz) return;
+  constexpr std::int64_t kShortestInMicroseconds = 200;  // 5 kHz; 5 Hz in milliseconds
+  refuse(file,
+         "found time stamps {} apart, which in nanoseconds are {:.4g} Hz. Expected nanoseconds; "
+         "are its time stamps in {}?",
+         step_ns,
+         rate_hz(times_ns),
+         step_ns <= kShortestInMicroseconds ? "milliseconds" : "microseconds");
+}
 
 ImageList listed_images(CsvTable table, TimeUnit unit, const fs::path& folder) {
   ImageList list;
@@ -98,6 +115,7 @@ void add_gyroscope(Recording& recording,
   const auto file = if_file(folder / "imu0" / "data.csv");
   if (!file) return;
   Gyroscope gyroscope = read_gyroscope(*file, TimeUnit::nanoseconds);
+  check_unit(*file, gyroscope.timestamps_ns, kHighestSampleRate_hz);
   ImuCalibration imu;
   if (const auto sensor = if_file(folder / "imu0" / "sensor.yaml")) {
     imu = read_imu_calibration(*sensor);
@@ -152,6 +170,10 @@ Recording read_euroc(const fs::path& folder, const OpenOptions& options) {
   recording.camera = calibration.camera;
   recording.T_body_camera = calibration.T_body_camera;
   add_images(recording, read_image_list(folder), options);
+  const fs::path list = folder / "cam0" / "data.csv";
+  check_unit(is_file(list) ? list : folder / "cam0" / "data",
+             recording.timestamps_ns,
+             kHighestFrameRate_hz);
   take_source(recording, calibration);
   check_image_size(recording, calibration_file);
   const auto mean_bias = add_truth(recording, folder);

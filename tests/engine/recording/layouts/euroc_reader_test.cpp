@@ -189,7 +189,10 @@ TEST_F(EurocReader, NamesAMissingImageAndItsLine) {
 
 TEST_F(EurocReader, NamesMissingFiles) {
   std::filesystem::remove(folder.path() / "mav0/cam0/data.csv");
-  EXPECT_THAT(open()->timestamps_ns, ElementsAre(0, 1, 2, 3));  // from the images' names
+  for (int i = 3; i > 0; --i)
+    std::filesystem::rename(folder.path() / fmt::format("mav0/cam0/data/{}.png", i),
+                            folder.path() / fmt::format("mav0/cam0/data/{}000000.png", i));
+  EXPECT_THAT(open()->timestamps_ns, ElementsAre(0, 1000000, 2000000, 3000000));  // from the names
   folder.write("mav0/cam0/data/cat7.png", cv::Mat(48, 64, CV_8UC1));
   EXPECT_THAT(
       error(),
@@ -234,6 +237,32 @@ TEST_F(EurocReader, ReadsBiasUncertaintyAndNoise) {
   EXPECT_EQ(open()->gyroscope->bias_sigma_rad_s, 0.1);
   EXPECT_EQ(with("gyroscope_bias_sigma: 0.002").bias_sigma_rad_s, 0.002);
   EXPECT_EQ(with("gyroscope_noise_density: 1.7e-4").noise_density, 1.7e-4);
+TEST_F(EurocReader, AsksForTheUnitOfTimesThatAreNoNanoseconds) {
+  const auto images = [&](const char* form) {
+    std::string list;
+    for (int i = 0; i < 4; ++i) list += fmt::format(fmt::runtime(form), 33 * (i + 1), i);
+    folder.write("mav0/cam0/data.csv", list);
+    return error();
+  };
+  EXPECT_EQ(images("1403636579{:03d},{}.png\n"),
+            file("mav0/cam0/data.csv") +
+                ": found time stamps 33 apart, which in nanoseconds are 3.03e+07 Hz. Expected "
+                "nanoseconds; are its time stamps in milliseconds?");
+  EXPECT_THAT(images("1403636579{:03d}333,{}.png\n"),
+              HasSubstr("are its time stamps in microseconds?"));
+  EXPECT_THAT(images("1403636579.{:03d},{}.png\n"),
+              HasSubstr("data.csv:2: found time stamp 1403636579.066, in seconds, expected "
+                        "nanoseconds"));
+}
+
+TEST_F(EurocReader, AsksForTheUnitOfTheGyroscopesTimes) {
+  folder.write("mav0/imu0/data.csv", "1403636579000000,0,0,0\n1403636579005000,0,0,0\n");
+  EXPECT_EQ(error(),
+            file("mav0/imu0/data.csv") +
+                ": found time stamps 5000 apart, which in nanoseconds are 2e+05 Hz. Expected "
+                "nanoseconds; are its time stamps in microseconds?");
+}
+
   EXPECT_EQ(with("gyroscope_noise_density: 0.0").noise_density, Gyroscope{}.noise_density);
 }
 
@@ -260,7 +289,7 @@ cv::Mat noise() {
 TEST_F(EurocReader, RefusesTruncatedImagesAndReturnsNoPartialOnes) {
   for (const std::string image : {"p.png", "p.jpg", "p.ppm", "p.bmp", "p.webp"}) {
     const std::string name = "mav0/cam0/data/" + image;
-    folder.write("mav0/cam0/data.csv", "10,0.png\n20," + image + "\n");
+    folder.write("mav0/cam0/data.csv", "0,0.png\n20000000," + image + "\n");
     folder.write(name, noise());
     EXPECT_EQ(open()->images->bgr(1).size(), cv::Size(64, 48));
     for (const double part : {0.0, 0.1, 0.5, 0.9, 0.995}) {
