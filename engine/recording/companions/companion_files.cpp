@@ -180,14 +180,19 @@ PosePath read_tum_path(const fs::path& file) {
 }
 
 std::optional<Pose> pose_at(const PosePath& path, std::int64_t time_ns) {
+  constexpr std::int64_t kMostOutside_ns = 1'000'000;
+  constexpr std::int64_t kPeriodsPerOutside = 10;
   const auto& times = path.timestamps_ns;
-  const auto after = std::lower_bound(times.begin(), times.end(), time_ns);
-  if (after == times.end()) return std::nullopt;
-  const auto b = after - times.begin();
-  if (*after == time_ns) return path.poses[b];
-  if (b == 0) return std::nullopt;
+  const auto after = std::ranges::lower_bound(times, time_ns);
+  if (after != times.end() && *after == time_ns) return path.poses[after - times.begin()];
+  if (times.size() < 2) return std::nullopt;
+  const auto b = std::clamp<std::ptrdiff_t>(after - times.begin(), 1, std::ssize(times) - 1);
   const auto a = b - 1;
-  if (times[b] - times[a] > path.longest_gap_ns) return std::nullopt;
+  const std::int64_t period_ns = times[b] - times[a];
+  if (period_ns > path.longest_gap_ns) return std::nullopt;
+  // The ends of rounded times: extrapolates a little.
+  const std::int64_t outside_ns = std::min(kMostOutside_ns, period_ns / kPeriodsPerOutside);
+  if (time_ns < times[a] - outside_ns || time_ns > times[b] + outside_ns) return std::nullopt;
   const double s =
       static_cast<double>(time_ns - times[a]) / static_cast<double>(times[b] - times[a]);
   const Pose& T_a = path.poses[a];

@@ -98,7 +98,8 @@ PosePath read_euroc_path(const fs::path& file);
 /// Reads TUM's groundtruth.txt: time [s], p, q_xyzw, with blanks. Throws InputError.
 PosePath read_tum_path(const fs::path& file);
 
-/// Interpolates a pose (slerp and linear); nullopt outside of the path and in long gaps.
+/// Interpolates a pose (slerp and linear), also up to a tenth of a period, at most 1 ms, outside of
+/// the path, whose times may be rounded; nullopt beyond and in long gaps.
 std::optional<Pose> pose_at(const PosePath& path, std::int64_t time_ns);
 
 /// Transform to the measured frame and clock offset.

@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <exception>
 #include <tuple>
+#include <utility>
 
 #include <fmt/ranges.h>
 
@@ -139,7 +140,8 @@ void add_notes(Recording& recording) {
   if (!from_board && !recording.truth)
     notes.emplace_back("no ground truth: no metrics");
   else if (recording.truth && std::ranges::none_of(recording.truth->poses, has_pose))
-    notes.push_back("the ground truth covers no frame: " + recording.truth->source);
+    notes.push_back(fmt::format("the ground truth covers no frame, and is not used: {}",
+                                std::exchange(recording.truth, {})->source));
   else if (!recording.plane)
     notes.emplace_back("no plane.yaml: no plane errors");
   const auto note_left_out = [&](int count, const char* what, const std::string& source) {

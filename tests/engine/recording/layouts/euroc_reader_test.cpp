@@ -101,6 +101,32 @@ TEST_F(EurocReader, InterpolatesTheCamerasTruth) {
   EXPECT_TRUE((poses[1]->R_wc * Eigen::Vector3d::UnitZ()).isApprox(R_wb.col(0), 1e-9));
 }
 
+TEST_F(EurocReader, ExtrapolatesATruthOfRoundedTimesToTheFirstAndLastFrame) {
+  const auto pose_of_first = [&](std::int64_t late_ns) {
+    write_truth(fmt::format("{},1,0,0,1,0,0,0\n{},2,0,0,1,0,0,0\n{},3,0,0,1,0,0,0\n",
+                            1403636579000000001 + late_ns,
+                            1403636579010000001 + late_ns,
+                            1403636579020000001 + late_ns));
+    const auto truth = open()->truth;
+    return truth ? truth->poses[0] : std::nullopt;
+  };
+  const auto pose = pose_of_first(400'000);
+  ASSERT_TRUE(pose);
+  EXPECT_NEAR(pose->p_wc.x(), 1 - 0.04 + 0.1, 1e-9);
+  EXPECT_TRUE(pose_of_first(-20'400'000));
+  EXPECT_FALSE(pose_of_first(1'100'000));
+  EXPECT_FALSE(pose_of_first(-21'100'000));
+}
+
+TEST_F(EurocReader, DoesNotUseATruthThatCoversNoFrame) {
+  write_truth("0,1,0,0,1,0,0,0\n10000000,2,0,0,1,0,0,0\n");
+  const auto recording = open();
+  EXPECT_FALSE(recording->truth);
+  EXPECT_THAT(recording->notes,
+              Contains("the ground truth covers no frame, and is not used: "
+                       "state_groundtruth_estimate0/data.csv"));
+}
+
 TEST_F(EurocReader, DoesNotInterpolateOverAGapInTheTruth) {
   std::string rows;
   for (const int ms : {-40, -30, -20, -10, 0, 10, 20, 30, 90, 110, 120, 230, 240})
@@ -211,32 +237,6 @@ TEST_F(EurocReader, NamesBackwardTimes) {
   EXPECT_THAT(error(), HasSubstr("cam0/data.csv:2: found time stamp 20, equal to"));
 }
 
-TEST_F(EurocReader, NamesBadTruth) {
-  write_truth("1403636579000000001,1,2,3,0.9,0,0,0\n");
-  EXPECT_THAT(error(), HasSubstr("data.csv:2: found a quaternion of norm 0.9"));
-  write_truth("1403636579000000001,1,2,nan,1,0,0,0\n");
-  EXPECT_THAT(error(), HasSubstr("data.csv:2: found no row of finite numbers, expected some"));
-  write_truth("1403636579000000001,1,2,far,1,0,0,0\n");
-  EXPECT_THAT(error(), HasSubstr("data.csv:2: found \"far\", expected a finite number"));
-  write_truth("1403636579000000001,1,2,3,1,0,0\n");
-  EXPECT_THAT(error(), HasSubstr("data.csv:2: found 7 columns, expected at least 8"));
-}
-
-TEST_F(EurocReader, NamesAnImageOfAnotherSize) {
-  folder.write("mav0/cam0/data/0.png", cv::Mat(40, 64, CV_8UC1, cv::Scalar(0)));
-  EXPECT_EQ(error(),
-            file("mav0/cam0/data/0.png") +
-                ": found an image of 64x40, expected the calibrated resolution 64x48");
-}
-
-TEST_F(EurocReader, ReadsBiasUncertaintyAndNoise) {
-  const auto with = [&](const std::string& line) {
-    folder.write("mav0/imu0/sensor.yaml", kTbsImu + line + "\n");
-    return *open()->gyroscope;
-  };
-  EXPECT_EQ(open()->gyroscope->bias_sigma_rad_s, 0.1);
-  EXPECT_EQ(with("gyroscope_bias_sigma: 0.002").bias_sigma_rad_s, 0.002);
-  EXPECT_EQ(with("gyroscope_noise_density: 1.7e-4").noise_density, 1.7e-4);
 TEST_F(EurocReader, AsksForTheUnitOfTimesThatAreNoNanoseconds) {
   const auto images = [&](const char* form) {
     std::string list;
@@ -263,6 +263,32 @@ TEST_F(EurocReader, AsksForTheUnitOfTheGyroscopesTimes) {
                 "nanoseconds; are its time stamps in microseconds?");
 }
 
+TEST_F(EurocReader, NamesBadTruth) {
+  write_truth("1403636579000000001,1,2,3,0.9,0,0,0\n");
+  EXPECT_THAT(error(), HasSubstr("data.csv:2: found a quaternion of norm 0.9"));
+  write_truth("1403636579000000001,1,2,nan,1,0,0,0\n");
+  EXPECT_THAT(error(), HasSubstr("data.csv:2: found no row of finite numbers, expected some"));
+  write_truth("1403636579000000001,1,2,far,1,0,0,0\n");
+  EXPECT_THAT(error(), HasSubstr("data.csv:2: found \"far\", expected a finite number"));
+  write_truth("1403636579000000001,1,2,3,1,0,0\n");
+  EXPECT_THAT(error(), HasSubstr("data.csv:2: found 7 columns, expected at least 8"));
+}
+
+TEST_F(EurocReader, NamesAnImageOfAnotherSize) {
+  folder.write("mav0/cam0/data/0.png", cv::Mat(40, 64, CV_8UC1, cv::Scalar(0)));
+  EXPECT_EQ(error(),
+            file("mav0/cam0/data/0.png") +
+                ": found an image of 64x40, expected the calibrated resolution 64x48");
+}
+
+TEST_F(EurocReader, ReadsBiasUncertaintyAndNoise) {
+  const auto with = [&](const std::string& line) {
+    folder.write("mav0/imu0/sensor.yaml", kTbsImu + line + "\n");
+    return *open()->gyroscope;
+  };
+  EXPECT_EQ(open()->gyroscope->bias_sigma_rad_s, 0.1);
+  EXPECT_EQ(with("gyroscope_bias_sigma: 0.002").bias_sigma_rad_s, 0.002);
+  EXPECT_EQ(with("gyroscope_noise_density: 1.7e-4").noise_density, 1.7e-4);
   EXPECT_EQ(with("gyroscope_noise_density: 0.0").noise_density, Gyroscope{}.noise_density);
 }
 
