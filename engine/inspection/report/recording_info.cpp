@@ -17,11 +17,25 @@ namespace {
 
 constexpr int kMostFramesExamined = 300;
 constexpr int kSample = 60;
-constexpr double kFrameGap = 1.5;  // median periods
+constexpr double kGap = 1.5;  // median periods
 constexpr double kGyroGap = 5;
 constexpr std::size_t kLongestFile = 300;
 
 double in_seconds(std::int64_t ns) { return static_cast<double>(ns) * 1e-9; }
+
+/// Returns 1 / the mean difference of successive time stamps without gaps [Hz]. The median would be
+/// that of rounded time stamps.
+double mean_rate_hz(std::span<const std::int64_t> times) {
+  const double longest = kGap * static_cast<double>(median_period_ns(times));
+  double sum_ns = 0, count = 0;
+  for (std::size_t i = 1; i < times.size(); ++i) {
+    const auto length = static_cast<double>(times[i] - times[i - 1]);
+    if (length > longest) continue;
+    sum_ns += length;
+    ++count;
+  }
+  return sum_ns > 0 ? 1e9 * count / sum_ns : 0;
+}
 
 template <class Label>
 std::vector<TimeGap> gaps(std::span<const std::int64_t> times,
@@ -42,7 +56,7 @@ GyroscopeInfo describe_gyroscope(const Gyroscope& gyroscope, const Recording& re
   const auto& times = gyroscope.timestamps_ns;
   const auto first = recording.timestamps_ns.front() + gyroscope.time_offset_ns;
   const auto last = recording.timestamps_ns.back() + gyroscope.time_offset_ns;
-  return {rate_hz(times),
+  return {mean_rate_hz(times),
           times.front() <= first && times.back() >= last,
           gaps(times, kGyroGap, first, [&](auto i) { return gyroscope.lines[i]; })};
 }
@@ -226,8 +240,8 @@ RecordingInfo describe(const Recording& recording) {
   RecordingInfo info;
   info.recording = &recording;
   info.duration_s = in_seconds(times.back() - times.front());
-  info.rate_hz = gpo::rate_hz(times);
-  info.gaps = gaps(times, kFrameGap, times.front(), [](auto i) { return static_cast<int>(i); });
+  info.rate_hz = mean_rate_hz(times);
+  info.gaps = gaps(times, kGap, times.front(), [](auto i) { return static_cast<int>(i); });
   if (recording.gyroscope) info.gyroscope = describe_gyroscope(*recording.gyroscope, recording);
   info.truth = describe_truth(recording);
   info.tracks = describe_tracks(recording);

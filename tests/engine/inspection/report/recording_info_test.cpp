@@ -36,6 +36,15 @@ Recording tracks_recording() {
   return recording;
 }
 
+TEST(RecordingInfo, HasTheMeanRateOfTimesInWholeMilliseconds) {
+  Recording recording = tracks_recording();
+  recording.timestamps_ns.clear();
+  for (const int ms : {0, 33, 67, 100, 133, 167, 200, 267, 300})
+    recording.timestamps_ns.push_back(ms * 1'000'000LL);
+  recording.truth = {};
+  EXPECT_NEAR(describe(recording).rate_hz, 30, 0.1);
+}
+
 TEST(RecordingInfo, CountsFindsGapsAndConvertsToJsonAndText) {
   const Recording recording = tracks_recording();
   const auto info = describe(recording);
