@@ -122,9 +122,11 @@ struct VideoIndex {
   cv::Size size;                 ///< [px] as shown, that is after the container's rotation
   double declared_count = 0;     ///< frames according to the container; 0 if unknown
   bool estimated_count = false;  ///< whether `declared_count` is the duration times the rate
-  int hidden_count = 0;   ///< frames that players do not show: trimmed, or without references
-  double rate_hz = 0;     ///< average according to the container; 0 if unknown
-  int quarter_turns = 0;  ///< clockwise rotation from the stored to the shown image
+  int hidden_count = 0;  ///< frames that players do not show: trimmed, or without references
+  std::vector<std::int64_t> damaged;  ///< times of left out frames whose data are incomplete
+  double pixel_aspect = 1;            ///< width of a pixel divided by its height, as shown
+  double rate_hz = 0;                 ///< average according to the container; 0 if unknown
+  int quarter_turns = 0;              ///< clockwise rotation from the stored to the shown image
   bool mirrored = false;  ///< whether players also mirror the image; the decoder does not
   bool complete = true;   ///< false: `times` are only the first ones
 };
@@ -178,10 +180,11 @@ class VideoDecoder {
 struct VideoFile {
   std::vector<std::int64_t> timestamps_ns;  ///< all frames, strictly ascending, the first is 0
   std::shared_ptr<const FrameCache> images;
-  double first_frame_s = 0;  ///< according to the container
-  int quarter_turns = 0;     ///< clockwise rotation from the stored to the shown images
-  bool mirrored = false;     ///< whether players also mirror them
-  bool complete = true;      ///< false: only the first frames
+  double first_frame_s = 0;        ///< according to the container
+  int quarter_turns = 0;           ///< clockwise rotation from the stored to the shown images
+  double pixel_aspect = 1;         ///< width of a pixel divided by its height
+  std::vector<std::string> notes;  ///< see `Recording::notes`
+  bool complete = true;            ///< false: only the first frames
 };
 
 /// Opens a video without decoding it, or its `first_frames` (see `VideoDecoder`); its times are the

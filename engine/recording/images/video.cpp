@@ -40,6 +40,15 @@ Orientation orientation_of(const AVStream& stream) {
   return {((static_cast<int>(std::lround(turns)) % 4) + 4) % 4, mirrored};
 }
 
+/// Returns the width of a stored pixel divided by its height.
+double pixel_aspect_of(const AVStream& stream) {
+  constexpr double kMost = 4;
+  const AVRational& of_container = stream.sample_aspect_ratio;
+  const double aspect =
+      av_q2d(of_container.num > 0 ? of_container : stream.codecpar->sample_aspect_ratio);
+  return aspect >= 1 / kMost && aspect <= kMost ? aspect : 1;
+}
+
 /// Returns whether frames are missing because the file was truncated.
 bool is_truncated(const fs::path& file, const VideoIndex& index) {
   const double found = static_cast<double>(index.times.size()) + index.hidden_count;
@@ -53,6 +62,21 @@ std::vector<std::int64_t> timestamps_ns(const VideoIndex& index) {
     times.push_back(
         std::llround(static_cast<double>(time - index.times.front()) * index.unit_s * 1e9));
   return times;
+}
+
+std::vector<std::string> notes_of(const VideoIndex& index) {
+  std::vector<std::string> notes;
+  if (index.mirrored)
+    notes.emplace_back("players mirror this video: its images are read as stored");
+  if (index.damaged.empty()) return notes;
+  const std::int64_t first =
+      std::max<std::int64_t>(0, std::ranges::min(index.damaged) - index.times.front());
+  notes.push_back(
+      fmt::format("the video lacks data of {}, first at {:.3f} s: these are left out, and images "
+                  "after them may be wrong up to the next key frame",
+                  counted(index.damaged.size(), "frame"),
+                  static_cast<double>(first) * index.unit_s));
+  return notes;
 }
 
 }  // namespace
@@ -119,6 +143,8 @@ VideoDecoder::VideoDecoder(fs::path file, const ReadProgress& progress, int firs
   index_.quarter_turns = orientation.quarter_turns;
   index_.mirrored = orientation.mirrored;
   if (index_.quarter_turns % 2 == 1) std::swap(index_.size.width, index_.size.height);
+  index_.pixel_aspect = pixel_aspect_of(stream);
+  if (index_.quarter_turns % 2 == 1) index_.pixel_aspect = 1 / index_.pixel_aspect;
   const double rate = av_q2d(stream.avg_frame_rate);
   if (std::isfinite(rate)) index_.rate_hz = rate;
   index_.declared_count = declared_count(*input_->format, stream);
@@ -143,6 +169,7 @@ bool VideoDecoder::index_packets(const ReadProgress& progress, int first_frames)
   index_.times = std::move(times.all);
   index_.key_times = std::move(times.keys);
   index_.hidden_count = times.hidden;
+  index_.damaged = std::move(times.damaged);
   if (times.exact && times.before_keys && !index_.key_times.empty()) drop_undecodable();
   return times.exact;
 }
@@ -315,7 +342,8 @@ VideoFile open_video(const fs::path& file,
           .images = std::make_shared<const FrameCache>(count, decode, left),
           .first_frame_s = static_cast<double>(index.times.front()) * index.unit_s,
           .quarter_turns = index.quarter_turns,
-          .mirrored = index.mirrored,
+          .pixel_aspect = index.pixel_aspect,
+          .notes = notes_of(index),
           .complete = index.complete};
 }
 

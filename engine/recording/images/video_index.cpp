@@ -74,7 +74,10 @@ void PacketTimes::add(const AVPacket& packet, const AVCodecParameters& codec) {
     ++hidden;
     return;
   }
-  if ((packet.flags & AV_PKT_FLAG_CORRUPT) != 0) return;
+  if ((packet.flags & AV_PKT_FLAG_CORRUPT) != 0) {
+    damaged.push_back(time_of(packet));
+    return;
+  }
   const bool timed = packet.pts != AV_NOPTS_VALUE;
   exact = exact && (timed || (codec.video_delay <= 0 && packet.dts != AV_NOPTS_VALUE));
   const std::int64_t time = time_of(packet);

@@ -14,7 +14,8 @@ struct PacketTimes {
   std::vector<std::int64_t> all;
   std::vector<std::int64_t> keys;
   int hidden = 0;
-  bool exact = true;         ///< all known and different
+  std::vector<std::int64_t> damaged;  ///< frames with incomplete data, not among `all`
+  bool exact = true;                  ///< all known and different
   bool before_keys = false;  ///< whether some are before the first key frame, stored or shown
 
   void add(const AVPacket& packet, const AVCodecParameters& codec);

@@ -222,18 +222,26 @@ void check_image_size(const Recording& recording, const fs::path& calibration_fi
            "images");
 }
 
-void guess_camera(Recording& recording, const std::optional<FieldOfView>& view) {
-  const int width = recording.camera.width, height = recording.camera.height;
+void guess_camera(Recording& recording,
+                  const std::optional<FieldOfView>& view,
+                  double pixel_aspect) {
+  const int height = recording.camera.height;
+  const int width = static_cast<int>(std::lround(pixel_aspect * recording.camera.width));
   Camera camera =
       view ? camera_of_focal(width, height, view->focal_diagonals) : camera_of_view(width, height);
   if (view && view->fisheye) {
     camera.distortion = Distortion::equidistant;
     camera.coefficients.assign(4, 0.0);
   }
+  camera.width = recording.camera.width;
+  camera.fx /= pixel_aspect;
+  camera.cx = camera_of_view(camera.width, height).cx;
   camera.readout_direction = recording.camera.readout_direction;
-  const std::string detail =
+  std::string detail =
       view ? "field of view from " + view->source
            : fmt::format("assuming a {:.0f} deg diagonal field of view", kUsualView_deg);
+  if (pixel_aspect != 1)
+    detail += fmt::format(", pixels {:.4g} times as wide as high", pixel_aspect);
   set_camera(recording, camera, CameraSource::guess, detail + "; run `calibrate`");
 }
 

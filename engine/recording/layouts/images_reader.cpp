@@ -170,6 +170,17 @@ Calibration calibration_of(const fs::path& folder,
   return read_calibration(*search.file);
 }
 
+/// The size of a calibration does not tell whether it is of the turned images.
+void note_turn(Recording& recording, int quarter_turns, const std::string& calibration_name) {
+  const bool same_size = recording.camera.width == recording.camera.height;
+  if (quarter_turns == 0 || (quarter_turns != 2 && !same_size)) return;
+  recording.notes.push_back(
+      fmt::format("the video asks to be turned by {} deg: {} must be the calibration of the turned "
+                  "images",
+                  90 * quarter_turns,
+                  calibration_name));
+}
+
 }  // namespace
 
 std::optional<fs::path> find_images(const fs::path& path) {
@@ -227,14 +238,15 @@ Recording read_images(const fs::path& path, const OpenOptions& options) {
     recording.complete = opened.complete;
     recording.images = opened.images;
     recording.image_files = {*video};
-    if (opened.mirrored)
-      recording.notes.emplace_back("players mirror this video: its images are read as stored");
+    recording.notes.insert(recording.notes.end(), opened.notes.begin(), opened.notes.end());
+    if (search.file) note_turn(recording, opened.quarter_turns, name);
   } else if (!sequence.files.empty()) {
     add_image_files(recording, sequence.files, options.cache_bytes);
   }
   if (!search.file) {
     const auto& files = recording.image_files;
-    guess_camera(recording, files.empty() ? std::nullopt : stored_view(files.front()));
+    guess_camera(
+        recording, files.empty() ? std::nullopt : stored_view(files.front()), opened.pixel_aspect);
   }
   take_source(recording, calibration);
   check_image_size(recording, calibration_file);

@@ -137,7 +137,9 @@ void take_source(Recording& recording, const Calibration& calibration);
 void check_image_size(const Recording& recording, const fs::path& calibration_file);
 
 /// Guesses a camera from the known size of the images and their stored field of view, or the usual
-/// one (kUsualView_deg).
-void guess_camera(Recording& recording, const std::optional<FieldOfView>& view = {});
+/// one (kUsualView_deg). `pixel_aspect`: width of a pixel divided by its height.
+void guess_camera(Recording& recording,
+                  const std::optional<FieldOfView>& view = {},
+                  double pixel_aspect = 1);
 
 }  // namespace gpo

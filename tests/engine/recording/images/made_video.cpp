@@ -68,6 +68,7 @@ libav::Codec open_encoder(const cv::Mat& image, const fs::path& file, const Vide
   encoder->width = image.cols;
   encoder->height = image.rows;
   encoder->pix_fmt = b_frames ? AV_PIX_FMT_YUV420P : AV_PIX_FMT_YUVJ420P;
+  encoder->sample_aspect_ratio = {options.pixel_aspect.first, options.pixel_aspect.second};
   encoder->time_base = time_base;
   encoder->bit_rate = 4'000'000;
   encoder->gop_size = b_frames ? 12 : 1;
@@ -179,6 +180,7 @@ Output open_output(const fs::path& file,
   Output format(made);
   AVStream* stream = libav::avformat_new_stream(made, nullptr);
   stream->time_base = encoder.time_base;
+  stream->sample_aspect_ratio = encoder.sample_aspect_ratio;
   check(libav::avcodec_parameters_from_context(stream->codecpar, &encoder), "no parameters");
   if (options.clockwise_degrees != 0 || options.mirrored) turn(stream, options);
   if (!options.telemetry_format.empty()) add_telemetry_stream(made);

@@ -1,5 +1,6 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
+#include "engine/files/text_file.h"
 #include "engine/geometry/pose.h"
 #include "engine/recording/recording.h"
 #include "tests/engine/recording/images/made_video.h"
@@ -101,7 +102,6 @@ TEST_F(ImagesReader, SortsImagesByTheirNumbers) {
                           "no ground truth: no metrics"));
 }
 
-TEST_F(ImagesReader, ScalesImagesOf16BitsAlikeAlsoIfTheFirstIsDark) {
 TEST_F(ImagesReader, PrefersTheLongerSequenceAndNamesTheOther) {
   write_images(3);
   for (const char* copy : {"img0 (1).png", "img1 (1).png"}) folder.write(copy, numbered(99));
@@ -111,6 +111,7 @@ TEST_F(ImagesReader, PrefersTheLongerSequenceAndNamesTheOther) {
   EXPECT_THAT(recording->notes, Contains("not read: img0 (1).png (2 images: another sequence)"));
 }
 
+TEST_F(ImagesReader, ScalesImagesOf16BitsAlikeAlsoIfTheFirstIsDark) {
   for (int i = 0; i < 12; ++i)
     folder.write(std::to_string(i) + ".tiff",
                  cv::Mat(48, 64, CV_16UC1, cv::Scalar::all(i == 0 ? 500 : 2000 + 100 * i)));
@@ -219,6 +220,50 @@ TEST_F(ImagesReader, GuessesTheCameraWithANote) {
   EXPECT_THAT(recording->notes,
               testing::Contains(
                   testing::StartsWith("no calibration: assuming a 70 deg diagonal field of view")));
+}
+
+TEST_F(ImagesReader, GuessesTheCameraOfPixelsThatAreNotSquare) {
+  std::filesystem::remove(folder.path() / "camera.yaml");
+  for (const int degrees : {0, 90}) {
+    make_video(folder.path() / "clip.mp4",
+               {numbered(0), numbered(1)},
+               {.clockwise_degrees = degrees, .pixel_aspect = {4, 3}});
+    const auto recording = open();
+    const Camera& camera = recording->camera;
+    EXPECT_NEAR(camera.fy / camera.fx, degrees == 0 ? 4.0 / 3 : 3.0 / 4, 1e-9);
+    EXPECT_EQ(camera.cx, (camera.width - 1) / 2.0);
+    EXPECT_THAT(recording->notes, Contains(HasSubstr(" times as wide as high")));
+  }
+}
+
+TEST_F(ImagesReader, NotesThatACalibrationMustBeOfTheTurnedImages) {
+  const auto turned = testing::StartsWith("the video asks to be turned");
+  make_video(folder.path() / "clip.mp4", {numbered(0)}, {.clockwise_degrees = 180});
+  EXPECT_THAT(open()->notes,
+              Contains("the video asks to be turned by 180 deg: camera.yaml must be the "
+                       "calibration of the turned images"));
+  make_video(folder.path() / "clip.mp4", {numbered(0)});
+  EXPECT_THAT(open()->notes, testing::Not(Contains(turned)));
+}
+
+TEST_F(ImagesReader, NotesAVideoThatLacksData) {
+  std::filesystem::remove(folder.path() / "camera.yaml");
+  std::vector<cv::Mat> images;
+  for (int i = 0; i < 24; ++i) {
+    images.emplace_back(240, 320, CV_8UC3);
+    cv::RNG(static_cast<std::uint64_t>(i + 1)).fill(images.back(), cv::RNG::UNIFORM, 0, 256);
+  }
+  const auto clip = folder.path() / "clip.ts";
+  make_video(clip, images);
+  std::string bytes = read_file(clip);
+  constexpr std::size_t kPacket = 188;
+  std::size_t lost = bytes.size() / kPacket / 2 * kPacket;
+  while (bytes.substr(lost + 1, 2) != std::string("\x01\0", 2)) lost += kPacket;  // the video's
+  folder.write("clip.ts", bytes.erase(lost, kPacket));
+  const auto recording = open();
+  EXPECT_EQ(recording->frame_count(), 23);
+  EXPECT_THAT(recording->notes,
+              Contains(testing::StartsWith("the video lacks data of 1 frame, first at ")));
 }
 
 TEST_F(ImagesReader, RecognizesASelfCalibratedCamera) {
