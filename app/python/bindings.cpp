@@ -158,12 +158,19 @@ void check_within(const char* name, double value, double least, double most) {
 OwnMethods take_methods(py::kwargs& given) {
   MethodArguments arguments;
   arguments.specs = {take_texts(given, "method_command"), take_texts(given, "result")};
+  const auto require_command = [&](const char* name) {
+    if (arguments.specs.commands.empty())
+      throw InputError(fmt::format("{}: applies to method_command, which is not given", name));
+  };
   if (given.contains("method_timeout")) {
     arguments.timeout_s = given.attr("pop")("method_timeout").cast<double>();
     check_within("method_timeout", arguments.timeout_s, 0.01, 1e5);
+    require_command("method_timeout");
   }
-  if (given.contains("method_resample"))
+  if (given.contains("method_resample")) {
     arguments.resample = given.attr("pop")("method_resample").cast<bool>();
+    if (arguments.resample) require_command("method_resample");
+  }
   return OwnMethods(arguments);
 }
 

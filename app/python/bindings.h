@@ -249,12 +249,14 @@ Camera camera_of(const CameraOrK& given);
 
 Eigen::MatrixXd covariance_of(const Numbers& rows);
 
+/// Masked pixels are not seen. `R_wc` may be None.
 Frame frame_of(std::int64_t timestamp_ns,
                const py::object& ids,
-               const Numbers& pixels,
-               const std::optional<Numbers>& R_wc);
+               const py::object& pixels,
+               const py::object& R_wc);
 /// Converts (timestamp_ns, ids, pixels[, R_wc]); `number` is for messages.
 Frame frame_of(const py::handle& given, std::size_t number);
+std::pair<int, int> size_of(const py::object& given);
 
 /// Converts a dict with the keys of `Recording.gyroscope`; defaults are those of a phone.
 std::optional<Gyroscope> gyroscope_of(const std::optional<py::dict>& given);

@@ -128,6 +128,17 @@ std::vector<Configuration> configurations_with(const std::vector<Configuration>&
   return all;
 }
 
+/// Throws InputError for a start by its number from which no window fits in any recording.
+void check_starts(const std::vector<Range>& starts, const Experiment& experiment) {
+  for (const Range& range : starts) {
+    const auto has_it = [&](const auto& recording) {
+      return std::ranges::count(recording.starts, range.first) > 0;
+    };
+    if (range.last == range.first && std::ranges::none_of(experiment.recordings, has_it))
+      throw InputError(fmt::format("starts: no window fits from frame {}", range.first));
+  }
+}
+
 py::object evaluated(const std::vector<RecordingOrPath>& recordings,
                      const py::object& methods,
                      const py::object& lengths,
@@ -154,6 +165,7 @@ py::object evaluated(const std::vector<RecordingOrPath>& recordings,
   const auto rows = interruptible(
       [all, request, scratch, folder, threads](const std::stop_token& stop) -> std::vector<Row> {
         const Experiment experiment = plan_experiment(all, request);
+        check_starts(request.starts, experiment);
         const bool done = run_experiment(experiment, all, folder, {.jobs = threads, .stop = stop});
         if (!done) return {};
         return collect_rows(experiment, std::span(&folder, 1));

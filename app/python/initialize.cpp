@@ -81,7 +81,7 @@ py::class_<Camera> camera_class(py::module_& module) {
   camera.attr("__module__") = "gpo";
   camera.def(
       py::init([](const Numbers& K,
-                  std::pair<int, int> size,
+                  const py::object& size,
                   const Numbers& distortion,
                   const std::string& model,
                   const std::optional<Numbers>& covariance,
@@ -89,7 +89,7 @@ py::class_<Camera> camera_class(py::module_& module) {
                   std::optional<double> readout_sigma_s,
                   const std::optional<std::string>& readout_direction) {
         Camera made = pinhole_of(K);
-        std::tie(made.width, made.height) = size;
+        std::tie(made.width, made.height) = size_of(size);
         made.distortion = distortion_of(model, static_cast<std::size_t>(distortion.size()));
         made.coefficients.assign(distortion.data(), distortion.data() + distortion.size());
         if (covariance) set_lens_covariance(made, covariance_of(*covariance));
@@ -280,8 +280,8 @@ void bind_live(py::module_& module) {
           [](Live& live,
              std::int64_t timestamp_ns,
              const py::object& ids,
-             const Numbers& pixels,
-             const std::optional<Numbers>& R_wc) {
+             const py::object& pixels,
+             const py::object& R_wc) {
             const Frame frame = frame_of(timestamp_ns, ids, pixels, R_wc);
             return live.status_of([&] {
               const py::gil_scoped_release others_may_run;
@@ -292,7 +292,7 @@ void bind_live(py::module_& module) {
           py::arg("ids"),
           py::arg("pixels"),
           py::arg("R_wc") = py::none(),
-          "Adds ids (n,), raw pixels (n, 2) and, if known, R_wc (3, 3)")
+          "Adds ids (n,), raw pixels (n, 2; masked ones are not seen) and, if known, R_wc (3, 3)")
       .def_property_readonly(
           "status", [](const Live& live) { return live.status_of(live.initializer.status()); })
       .def("wait", &waited, "Solves all windows that samples cover, with those that were skipped");
@@ -325,7 +325,7 @@ void bind_initialize(py::module_& module) {
   add(
       "rotations_note",
       [](const TrackedWindow& w) { return w.shared->rotations_note; },
-      "why another source of rotations was not used");
+      "why the gyroscope is not used as given, or why another source of rotations was not used");
   add(
       "rotations",
       [](const TrackedWindow& w) { return std::string(to_string(w.shared->rotations)); },

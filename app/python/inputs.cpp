@@ -25,7 +25,7 @@ template <class T>
 T cast(const py::handle& given, const std::string& otherwise) {
   try {
     return given.cast<T>();
-  } catch (const py::cast_error&) {
+  } catch (const py::builtin_exception&) {
     throw InputError(otherwise);
   } catch (const py::error_already_set& error) {
     if (!error.matches(PyExc_ValueError) && !error.matches(PyExc_TypeError)) throw;
@@ -34,6 +34,29 @@ T cast(const py::handle& given, const std::string& otherwise) {
 }
 
 constexpr const char* kFrameShape = "expected ids (n,) and pixels (n, 2)";
+
+/// NumPy would also convert texts and complex numbers.
+Numbers numbers_of(const py::handle& given, const char* name) {
+  const auto any = cast<py::array>(given, fmt::format("{}: expected numbers", name));
+  if (std::string_view("iuf").find(any.dtype().kind()) == std::string_view::npos)
+    throw InputError(
+        fmt::format("{}: expected numbers, found {}", name, std::string(py::str(any.dtype()))));
+  return cast<Numbers>(any, fmt::format("{}: expected numbers", name));
+}
+
+/// Leaves out the masked items of a masked array.
+std::pair<py::object, py::object> unmasked(const py::object& ids, const py::object& pixels) {
+  const py::module_ numpy = py::module_::import("numpy");
+  const py::object masked = numpy.attr("ma");
+  if (!py::isinstance(pixels, masked.attr("MaskedArray"))) return {ids, pixels};
+  const auto count = static_cast<py::ssize_t>(py::len(pixels));
+  if (count == 0) return {ids, pixels};
+  const py::object seen = numpy.attr("logical_not")(
+      masked.attr("getmaskarray")(pixels).attr("reshape")(count, -1).attr("any")(1));
+  const py::object all = numpy.attr("asarray")(ids);
+  if (all.attr("size").cast<py::ssize_t>() != count) throw InputError(kFrameShape);
+  return {all[seen], pixels.attr("data")[seen]};
+}
 
 std::vector<std::int64_t> ids_of(const py::object& given) {
   const auto any = cast<py::array>(given, kFrameShape);
@@ -144,12 +167,14 @@ Camera camera_of(const CameraOrK& given) {
 
 Frame frame_of(std::int64_t timestamp_ns,
                const py::object& ids,
-               const Numbers& pixels,
-               const std::optional<Numbers>& R_wc) {
-  return {.timestamp_ns = timestamp_ns,
-          .ids = ids_of(ids),
-          .raw_px = pixels_of(pixels, kFrameShape),
-          .R_wc = R_wc ? std::optional(matrix_of(*R_wc, "R_wc")) : std::nullopt};
+               const py::object& pixels,
+               const py::object& R_wc) {
+  const auto [seen_ids, seen_pixels] = unmasked(ids, pixels);
+  Frame frame{.timestamp_ns = timestamp_ns,
+              .ids = ids_of(seen_ids),
+              .raw_px = pixels_of(numbers_of(seen_pixels, "pixels"), kFrameShape)};
+  if (!R_wc.is_none()) frame.R_wc = matrix_of(numbers_of(R_wc, "R_wc"), "R_wc");
+  return frame;
 }
 
 Frame frame_of(const py::handle& given, std::size_t number) {
@@ -158,14 +183,16 @@ Frame frame_of(const py::handle& given, std::size_t number) {
   const auto parts = cast<py::sequence>(given, expected);
   if (parts.size() != 3 && parts.size() != 4) throw InputError(expected);
   const auto time_ns = cast<std::int64_t>(parts[0], expected);
-  const auto pixels = cast<Numbers>(parts[2], expected);
-  using Rotation = std::optional<Numbers>;
-  const auto R_wc = parts.size() == 4 ? cast<Rotation>(parts[3], expected) : Rotation();
   try {
-    return frame_of(time_ns, parts[1], pixels, R_wc);
+    const py::object R_wc = parts.size() == 4 ? py::object(parts[3]) : py::none();
+    return frame_of(time_ns, parts[1], parts[2], R_wc);
   } catch (const InputError& error) {
     throw InputError(fmt::format("frame {}: {}", number, error.what()));
   }
+}
+
+std::pair<int, int> size_of(const py::object& given) {
+  return cast<std::pair<int, int>>(given, "size: expected integers (width, height)");
 }
 
 std::optional<Gyroscope> gyroscope_of(const std::optional<py::dict>& given) {

@@ -159,6 +159,26 @@ def test_window_that_is_not_ready_has_a_reason():
     assert gpo.initialize(recording.camera, frames, samples).rotations_note.startswith("the gyroscope has no samples")
 
 
+def test_initialize_notes_a_gyroscope_with_a_wrong_clock():
+    recording = gpo.open(DESK)
+    frames = gpo.run(recording).frames
+    late = dict(recording.gyroscope, time_offset_ns=recording.gyroscope["time_offset_ns"] + 50_000_000)
+    found = gpo.initialize(recording.camera, frames, late, error="transfer")
+    assert "its clock is about -50 ms off, corrected in this window" in found.rotations_note
+
+
+def test_masked_pixels_are_not_seen():
+    recording = gpo.open(DESK)
+    frames = gpo.run(recording, frames=12).frames
+    hidden = [pixels[:, 0] < 100 for _, _, pixels in frames]
+    masked = [
+        (time_ns, ids, np.ma.masked_array(pixels, np.stack([mask, mask], 1)))
+        for (time_ns, ids, pixels), mask in zip(frames, hidden)
+    ]
+    left_out = [(time_ns, ids[~mask], pixels[~mask]) for (time_ns, ids, pixels), mask in zip(frames, hidden)]
+    same(gpo.initialize(recording.camera, masked), gpo.initialize(recording.camera, left_out))
+
+
 def test_inertial_has_gravity_and_scale():
     recording = gpo.open(DESK)
     result = gpo.run(recording)
@@ -359,7 +379,10 @@ def test_two_points_set_the_scale():
         (lambda: gpo.initialize(np.eye(3), []), "a window of 0 frames"),
         (lambda: gpo.initialize(np.zeros((3, 3)), [(0, [], np.zeros((0, 2)))] * 2), "camera: fx 0"),
         (lambda: gpo.initialize(np.eye(3), [(0, [1], [[1, 2, 3]])]), r"frame 0: expected ids \(n,\)"),
-        (lambda: gpo.initialize(np.eye(3), [(0, [1], "here")]), "frame 0: expected"),
+        (lambda: gpo.initialize(np.eye(3), [(0, [1], "here")]), "frame 0: pixels: expected numbers"),
+        (lambda: gpo.initialize(np.eye(3), [(0, [1], [["1", "2"]])]), "frame 0: pixels: expected numbers, found <U1"),
+        (lambda: gpo.initialize(np.eye(3), [(0, [1], [[1j, 2]])]), "frame 0: pixels: expected numbers, found complex128"),
+        (lambda: gpo.initialize(np.eye(3), [None]), "frame 0: expected numbers"),
         (lambda: gpo.initialize(np.eye(3), [(0, [1])]), "frame 0: expected"),
         (lambda: gpo.initialize(np.eye(3), [], start=3), "start: applies to recordings"),
         (lambda: gpo.initialize(np.eye(3), [], speed=3), "speed"),
@@ -381,9 +404,13 @@ def test_two_points_set_the_scale():
         (lambda: gpo.Camera(np.eye(3), readout_direction="in"), "unknown value 'in', expected one of down"),
         (lambda: gpo.evaluate([DESK], jobs=-1), "jobs: -1, expected 0 to 1024"),
         (lambda: gpo.run(DESK, method_timeout=0), "method_timeout: 0, expected 0.01 to 100000"),
+        (lambda: gpo.run(DESK, method=print, method_timeout=1), "method_timeout: applies to method_command"),
+        (lambda: gpo.run(DESK, method=print, method_resample=True), "method_resample: applies to method_command"),
+        (lambda: gpo.evaluate([DESK], methods="gpo", starts=[0, 55], lengths=10), "starts: no window fits from frame 55"),
         (lambda: gpo.run(DESK, frames=10).export("ply", "a.ply", cube_side=-1), "cube_side: -1, expected 0 to"),
         (lambda: gpo.Camera(np.eye(3) * np.nan), "camera: fx nan"),
         (lambda: gpo.Camera(np.eye(3), size=(-1, 5)), "camera: width -1"),
+        (lambda: gpo.Camera(np.eye(3), size=(640.0, 480.0)), r"size: expected integers \(width, height\)"),
         (lambda: gpo.Camera(np.eye(3), readout_s=0.02), "readout_s: expected the camera's size"),
         (lambda: gpo.Camera(np.eye(3), readout_sigma_s=0.01), "readout_sigma_s: expected readout_s"),
         (lambda: gpo.Camera(np.eye(3), distortion=[0.1], model="none"), "found 1 coefficient, model none has none"),
