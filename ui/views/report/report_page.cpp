@@ -72,7 +72,9 @@ std::string cards_element(const Inspection& inspection) {
   const Window& window = *inspection.window;
   if (const auto sigma = normal_sigma_deg(inspection))
     add(*sigma > 90 ? "undetermined" : fmt::format("\u00B1 {:.3g}\u00B0", *sigma),
-        "normal of the plane, 1 sigma");
+        result.uncertainty && !result.uncertainty->own
+            ? "normal of the plane, 1 sigma of the window"
+            : "normal of the plane, 1 sigma");
   add(fmt::format("{} of {}", window.inlier_count(0), window.track_count()), "tracks on the plane");
   if (result.reprojection_rms_px)
     add(fmt::format("{:.3f} px", *result.reprojection_rms_px), "reprojection error, RMS");

@@ -46,7 +46,8 @@ struct Numbers {
 };
 
 std::string normal_parts(const Uncertainty& u) {
-  std::string text = fmt::format("rotations {}", to_string(u.rotations));
+  std::string text = u.own ? "" : "of the window, not of the method; ";
+  text += fmt::format("rotations {}", to_string(u.rotations));
   const auto add = [&](const char* name, const std::optional<double>& sigma) {
     if (sigma && *sigma > 0) text += fmt::format(", {} {:.3g} deg", name, *sigma);
   };

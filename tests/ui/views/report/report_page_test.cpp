@@ -99,6 +99,20 @@ TEST(ReportPage, ShowsWhyAnInitializationFailed) {
   EXPECT_THAT(page, Not(HasSubstr("<h3>Numbers</h3>")));
 }
 
+TEST(ReportPage, NamesAnUncertaintyThatIsNotTheMethodsOwn) {
+  ReportSection section = made_section("made", {.normal_sigma_deg = 0.5});
+  const auto page = [&] { return report_page({.sections = {section}, .program = "1"}); };
+  EXPECT_THAT(page(), Not(HasSubstr("of the window, not of the method")));
+  auto inspection = std::make_shared<Inspection>(*section.inspection);
+  auto result = std::make_shared<Initialization>(*inspection->initialization);
+  result->uncertainty->own = false;
+  inspection->initialization = result;
+  section.inspection = inspection;
+  EXPECT_THAT(page(),
+              AllOf(HasSubstr("of the window, not of the method; rotations"),
+                    HasSubstr("normal of the plane, 1 sigma of the window")));
+}
+
 TEST(ReportScene, HasPointsCamerasAndColorsOfTheImages) {
   const Inspection inspection = made_inspection({.truth = true});
   const auto scene = report_scene(inspection);
