@@ -108,9 +108,11 @@ std::optional<Readout> least_readout(const Eigen::Array3d& squares_px2,
                                      double freedom);
 
 /// Estimates the readout time of a calibrated camera as that with the least reprojection errors of
-/// the board in these frames, each with its own pose. nullopt if it is below four standard
-/// deviations, or if fewer than ten frames have velocities. Its standard deviation is the largest
-/// of the least squares', a jackknife's over blocks of time, and 1 ms for errors of lens and board.
+/// the board in these frames, each with its own pose. nullopt if it is below three standard
+/// deviations, or if fewer than ten frames have velocities. Its standard deviation contains the
+/// error of the lens and the largest of a jackknife's over blocks of time, 1 ms, and the least
+/// squares' of one frame, because a bent board moves its corners alike in all; twice that, as real
+/// recordings show.
 std::optional<Readout> readout_from_board(const BoardCorners& corners,
                                           std::span<const int> frames,
                                           std::span<const std::int64_t> timestamps_ns,

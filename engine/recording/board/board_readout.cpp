@@ -184,8 +184,9 @@ std::optional<Readout> readout_from_board(const BoardCorners& corners,
                                           const Board& board,
                                           const Camera& camera) {
   constexpr std::size_t kLeastFrames = 10;
-  constexpr double kLeastSigma_s = 1e-3;  // by errors of the board, which all frames share
-  constexpr double kMost_s = 0.1, kSignificantSigmas = 4;
+  constexpr double kLeastSigma_s = 1e-3;
+  constexpr double kMost_s = 0.1, kSignificantSigmas = 3;
+  constexpr double kOfRealBoards = 2;  // errors in windows of real recordings in these sigmas
   constexpr double kFirstStep_s = 0.01, kLastStep_s = 0.003;
   const auto moving = moving_corners(corners, frames, timestamps_ns);
   if (moving.size() < kLeastFrames) return std::nullopt;
@@ -209,9 +210,11 @@ std::optional<Readout> readout_from_board(const BoardCorners& corners,
     if (!by_other) return std::nullopt;
     lens_variance += std::pow(by_other->seconds - found->seconds, 2);
   }
+  // A bent board moves its corners alike in all frames, by no more than the residuals.
+  const double shared_s = found->sigma_s * std::sqrt(static_cast<double>(squares.size()));
   const double noise_s =
-      std::max({found->sigma_s, jackknife_sigma_s(squares, kLastStep_s), kLeastSigma_s});
-  found->sigma_s = std::hypot(noise_s, std::sqrt(lens_variance));
+      std::max({shared_s, jackknife_sigma_s(squares, kLastStep_s), kLeastSigma_s});
+  found->sigma_s = kOfRealBoards * std::hypot(noise_s, std::sqrt(lens_variance));
   return significant(found) ? found : std::nullopt;
 }
 

@@ -294,6 +294,7 @@ KnownAndUnknown truth_of_noisy(Recording recording, double readout_s, unsigned s
   for (int i = 0; i < recording.frame_count(); ++i) recording.timestamps_ns[i] = 33'000'000LL * i;
   recording.timestamps_ns.back() += seed;  // a cache file of its own
   recording.camera.readout = Readout{readout_s, 1e-4};
+  recording.camera.sigmas.assign(4 + recording.camera.coefficients.size(), 0);
   BoardCorners corners = rolling_corners(recording, brisk_path);
   std::mt19937 random(seed);
   std::normal_distribution<double> noise_px(0, 0.1);
@@ -309,8 +310,8 @@ TEST_F(BoardCache, AnUnknownReadoutTimeIsEstimated) {
   double squares = 0;
   constexpr int kSeeds = 20;
   for (int seed = 0; seed < kSeeds; ++seed) {
-    const double readout_s = seed % 2 == 0 ? 0.025 : -0.012;
-    const auto [known, unknown] = truth_of_noisy(recording(14), readout_s, seed);
+    const double readout_s = seed % 2 == 0 ? 0.035 : -0.03;
+    const auto [known, unknown] = truth_of_noisy(recording(30), readout_s, seed);
     ASSERT_TRUE(unknown.estimated_readout && !known.estimated_readout) << seed;
     const auto [seconds, sigma_s] = *unknown.estimated_readout;
     squares += std::pow((seconds - readout_s) / sigma_s, 2) / kSeeds;
@@ -324,7 +325,7 @@ TEST_F(BoardCache, AnUnknownReadoutTimeIsEstimated) {
 
 TEST_F(BoardCache, AGlobalShutterHasNoReadoutTime) {
   for (int seed = 0; seed < 20; ++seed)
-    EXPECT_FALSE(truth_of_noisy(recording(14), 0, seed).unknown.estimated_readout) << seed;
+    EXPECT_FALSE(truth_of_noisy(recording(30), 0, seed).unknown.estimated_readout) << seed;
 }
 
 TEST_F(BoardCache, FramesWithoutVelocitiesHaveNoPoseWithARollingShutter) {
