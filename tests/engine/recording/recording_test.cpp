@@ -233,8 +233,8 @@ TEST(RealRecordings, CardsTracksHasTracksAndGyroscope) {
   EXPECT_EQ(recording->images, nullptr);
   const auto info = describe(*recording);
   EXPECT_EQ(recording->frame_count(), 361);
-  EXPECT_NEAR(info.rate_hz, 10, 1e-6);
-  EXPECT_NEAR(info.gyroscope->rate_hz, 100, 1e-6);
+  EXPECT_NEAR(info.rate_hz, 10, 0.01);
+  EXPECT_NEAR(info.gyroscope->rate_hz, 100, 0.1);
   EXPECT_EQ(recording->gyroscope->timestamps_ns.size(), 3685U);
   EXPECT_TRUE(info.gyroscope->covers_frames);
   EXPECT_EQ(info.tracks->observations, 18924);
