@@ -39,6 +39,7 @@ Matrix3d lowered(const Matrix3d& covariance, const Vector3d& normal, const Matri
   return covariance - tangents * less.topLeftCorner<2, 2>() * tangents.transpose();
 }
 
+/// Lowers the normal's covariance and, by the same factor, all parts of its standard deviation.
 void lower_normal(const MatrixXd& less, Initialization& result) {
   Uncertainty& u = *result.uncertainty;
   const double before_deg = u.normal_sigma_deg;
@@ -49,7 +50,7 @@ void lower_normal(const MatrixXd& less, Initialization& result) {
                          &u.clock_sigma_deg,
                          &u.shutter_sigma_deg,
                          &u.lens_sigma_deg})
-    if (*part_deg) **part_deg *= kept;  // as if all shrank alike
+    if (*part_deg) **part_deg *= kept;
 }
 
 void lower_covariances(const JointRows& rows, const MatrixXd& less, Initialization& result) {

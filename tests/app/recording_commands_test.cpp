@@ -201,26 +201,6 @@ const std::vector<Mistaken> kMistaken = {
     {"results.csv", "recording,configuration,", "results of `evaluate`, expected a recording"},
     {"a.png", "x", "a single image, expected a recording"}};
 
-TEST(Outputs, DoNotOverwriteWhatARecordingWasReadFrom) {
-  const fs::path copy = fresh_folder() / "desk";
-  fs::copy(desk(), copy, fs::copy_options::recursive);
-  for (const auto& [command, file] : std::vector<std::pair<std::string, fs::path>>{
-           {"run {} --frames 8 --export ply={}", "mav0/cam0/sensor.yaml"},
-           {"run {} --frames 8 --json {}", "mav0/imu0/data.csv"},
-           {"run {} --frames 8 --trajectory {}", "mav0/state_groundtruth_estimate0/data.csv"},
-           {"run {} --frames 8 --json {}", "mav0/imu0/sensor.yaml"},
-           {"calibrate {} --gyroscope --output {}", "mav0/cam0/sensor.yaml"}}) {
-    const fs::path output = copy / file;
-    const std::string before = read_file(output);
-    expect_exit(2,
-                program(fmt::runtime(command), copy, output),
-                "belongs to the recording and would be overwritten");
-    EXPECT_EQ(read_file(output), before);
-  }
-  const fs::path own = copy / "result.json";
-  for (int time = 0; time < 2; ++time) succeeding("run {} --frames 8 --json {}", copy, own);
-}
-
 TEST(KnownFile, IsRecognizedAndRefused) {
   for (const auto& [name, content, message] : kMistaken) {
     const fs::path file = fresh_folder() / name;

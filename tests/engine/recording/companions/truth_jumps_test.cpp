@@ -118,7 +118,8 @@ TEST(Notes, NameARequestedPlaneThatDoesNotExist) {
   settings.options.plane = 9;
   const auto inspection = inspector.inspect(settings);
   EXPECT_THAT(notes_of(*inspection),
-              ElementsAre(testing::StartsWith("plane 9 does not exist: the window has ")));
+              ElementsAre("the ground truth describes another plane: no PNE and PDE",
+                          testing::StartsWith("plane 9 does not exist: the window has ")));
 }
 
 TEST(Notes, SayThatTheTruthOfABoardIgnoresARollingShutter) {
