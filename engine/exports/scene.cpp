@@ -4,6 +4,7 @@
 
 #include "engine/base/error.h"
 #include "engine/geometry/statistics.h"
+#include "engine/inspection/rolling_cameras.h"
 #include "engine/inspection/studies/studies.h"
 
 #include <algorithm>

@@ -80,6 +80,7 @@ struct Spent {
   double end_s = 0;
   unsigned checks = 0;
   std::set<fs::path> files = {};
+  int examinations = 0;
 };
 
 thread_local Spent spent;
@@ -146,8 +147,11 @@ Budget::~Budget() {
 std::set<fs::path> Budget::files() { return spent.files; }
 
 void note_read(const fs::path& file) {
-  if (spent.budgets > 0) spent.files.insert(file);
+  if (spent.budgets > 0 && spent.examinations == 0) spent.files.insert(file);
 }
+
+Examination::Examination() { ++spent.examinations; }
+Examination::~Examination() { --spent.examinations; }
 
 void spend_items(const fs::path& file, std::uint64_t count) {
   const std::uint64_t most = limits().items;

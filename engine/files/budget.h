@@ -73,6 +73,16 @@ class Budget {
 /// Adds to `Budget::files`.
 void note_read(const fs::path& file);
 
+/// While it exists, files read in this thread are not added to `Budget::files`: it is only found
+/// out what they are.
+class Examination {
+ public:
+  Examination();
+  ~Examination();
+  Examination(const Examination&) = delete;
+  Examination& operator=(const Examination&) = delete;
+};
+
 // Each adds to the thread's budget, if there is one. Throws InputError past the limit.
 void spend_items(const fs::path& file, std::uint64_t count = 1);
 /// At most 1 million messages plus one for each 16 bytes of the file.

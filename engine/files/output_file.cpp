@@ -87,8 +87,9 @@ bool same_file(const fs::path& one, const fs::path& other) {
   std::error_code error;
   if (fs::equivalent(one, other, error)) return true;
   const auto place = [&](const fs::path& file) {
-    const fs::path whole = fs::weakly_canonical(fs::absolute(followed(file)), error);
-    return error ? fs::absolute(file).lexically_normal() : whole;
+    const fs::path absolute = fs::absolute(followed(file), error);
+    const fs::path whole = fs::weakly_canonical(absolute, error);
+    return error ? absolute.lexically_normal() : whole;
   };
   return place(one) == place(other);
 }

@@ -32,6 +32,15 @@ double angle_deg(const Eigen::Vector3d& a, const Eigen::Vector3d& b);
 double radians(double degrees);
 double degrees(double radians);
 
+/// Motion of a camera around the time stamp of a frame, to second order, in its axes there:
+/// exp(t w + t^2 / 2 w'), t v + t^2 / 2 a.
+struct RowMotion {
+  Eigen::Vector3d rotation_rad_s = Eigen::Vector3d::Zero();
+  Eigen::Vector3d rotation_rad_s2 = Eigen::Vector3d::Zero();
+  Eigen::Vector3d translation_s = Eigen::Vector3d::Zero();   ///< [unit of the world / s]
+  Eigen::Vector3d translation_s2 = Eigen::Vector3d::Zero();  ///< [unit of the world / s^2]
+};
+
 /// x_a = scale * R_ab * x_b + t_ab.
 struct Similarity {
   double scale = 1;

@@ -13,15 +13,6 @@
 
 namespace gpo {
 
-/// Motion of a camera around the time stamp of a frame, to second order, in its axes there:
-/// exp(t w + t^2 / 2 w'), t v + t^2 / 2 a.
-struct RowMotion {
-  Eigen::Vector3d rotation_rad_s = Eigen::Vector3d::Zero();
-  Eigen::Vector3d rotation_rad_s2 = Eigen::Vector3d::Zero();
-  Eigen::Vector3d translation_s = Eigen::Vector3d::Zero();   ///< [unit of the world / s]
-  Eigen::Vector3d translation_s2 = Eigen::Vector3d::Zero();  ///< [unit of the world / s^2]
-};
-
 /// A camera that moves while its rows are read. The time stamp is that of the middle row.
 struct RollingCamera {
   /// Makes a global shutter. Keeps a reference.

@@ -3,7 +3,6 @@
 #pragma once
 
 #include "engine/evaluation/evaluation.h"
-#include "engine/geometry/rolling_camera.h"
 #include "engine/inertial/inertial_alignment.h"
 #include "engine/inspection/settings/settings_table.h"
 #include "engine/methods/methods.h"
@@ -154,17 +153,6 @@ std::optional<int> plane_near(const Inspection& inspection,
 
 /// Returns the estimate of a plane by its number; null if there is none.
 const Plane* estimated_plane(const Inspection& inspection, int number);
-
-/// Returns the camera's readout time, else that estimated from a board's corners; nullopt if
-/// unknown.
-std::optional<Readout> readout_of_truth(const Inspection& inspection);
-
-/// Returns the estimated camera of a frame; its rows are read one after the other if the result has
-/// a row delay. The initialization is ok.
-RollingCamera rolling_camera(const Inspection& inspection, int frame);
-/// Returns the same with the row delay of `readout_of_truth`, if known. The unit of its motion is
-/// that of the truth, which must be known.
-RollingCamera true_rolling_camera(const Inspection& inspection, int frame);
 
 /// Intersects a pixel's ray with a plane, in the reference camera's frame; nullopt if it misses.
 std::optional<Eigen::Vector3d> point_on_plane(const Inspection& inspection,

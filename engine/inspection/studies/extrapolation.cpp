@@ -4,6 +4,7 @@
 #include "engine/geometry/camera_resection.h"
 #include "engine/geometry/homography.h"
 #include "engine/geometry/plane.h"
+#include "engine/inspection/rolling_cameras.h"
 #include "engine/inspection/studies/studies.h"
 
 #include <algorithm>

@@ -1,6 +1,7 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/geometry/statistics.h"
+#include "engine/inspection/rolling_cameras.h"
 #include "engine/inspection/studies/studies.h"
 #include "engine/methods/candidates/homography_candidates.h"
 

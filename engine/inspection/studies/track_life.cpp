@@ -3,6 +3,7 @@
 #include "engine/base/error.h"
 #include "engine/frontend/inliers.h"
 #include "engine/geometry/homography.h"
+#include "engine/inspection/rolling_cameras.h"
 #include "engine/inspection/studies/studies.h"
 
 #include <algorithm>

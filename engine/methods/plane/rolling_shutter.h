@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "engine/geometry/rolling_camera.h"
+#include "engine/geometry/pose.h"
 #include "engine/methods/common/initialization.h"
 #include "engine/methods/plane/plane_motion.h"
 #include "engine/methods/plane/smooth_path.h"

@@ -93,6 +93,7 @@ std::optional<std::string> fault_of(const fs::path& file) {
   if (!readable)
     return likely ? std::optional<std::string>("not a format that is read") : std::nullopt;
   if (has_other_meaning(file)) return std::nullopt;
+  const Examination examination;
   try {
     const std::string bytes = read_file(file);
     likely = likely || binary || is_worded_calibration(bytes);

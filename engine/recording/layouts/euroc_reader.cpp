@@ -22,10 +22,12 @@ struct ImageList {
 constexpr double kHighestFrameRate_hz = 2000;
 constexpr double kHighestSampleRate_hz = 20'000;
 
-/// Throws InputError if nanoseconds would mean a higher rate than that of any sensor.
+/// Throws InputError if nanoseconds would mean a higher rate than that of any sensor. Nanoseconds
+/// since 1970 are right in any case: a stream may deliver its images in bursts.
 void check_unit(const fs::path& file, const std::vector<std::int64_t>& times_ns, double most_hz) {
+  constexpr std::int64_t kYear2000_ns = 946'684'800'000'000'000;
   const std::int64_t step_ns = median_period_ns(times_ns);
-  if (rate_hz(times_ns) <= most_hz) return;
+  if (rate_hz(times_ns) <= most_hz || times_ns.front() > kYear2000_ns) return;
   constexpr std::int64_t kShortestInMicroseconds = 200;  // 5 kHz; 5 Hz in milliseconds
   refuse(file,
          "found time stamps {} apart, which in nanoseconds are {:.4g} Hz. Expected nanoseconds; "

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ui/views/image/image_geometry.h"
 
+#include "engine/inspection/rolling_cameras.h"
 #include "engine/inspection/studies/studies.h"
 #include "engine/window/tracks.h"
 

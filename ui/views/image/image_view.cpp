@@ -3,6 +3,7 @@
 #include "ui/views/image/image_view.h"
 
 #include "engine/base/error.h"
+#include "engine/inspection/rolling_cameras.h"
 #include "engine/inspection/studies/studies.h"
 #include "engine/window/tracks.h"
 #include "ui/views/image/image_geometry.h"

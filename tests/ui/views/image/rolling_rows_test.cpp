@@ -1,5 +1,6 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
+#include "engine/inspection/rolling_cameras.h"
 #include "engine/inspection/studies/studies.h"
 #include "engine/methods/plane/rolling_shutter.h"
 #include "engine/window/tracks.h"
