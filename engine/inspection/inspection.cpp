@@ -4,7 +4,6 @@
 
 #include "engine/base/error.h"
 #include "engine/geometry/statistics.h"
-#include "engine/inspection/rolling_cameras.h"
 #include "engine/pipeline/method_defaults.h"
 #include "engine/pipeline/pipeline.h"
 #include "engine/recording/companions/companion_files.h"
@@ -161,15 +160,6 @@ const Plane* estimated_plane(const Inspection& inspection, int number) {
   if (number == inspection.window->leader) return &result.plane;
   const auto found = std::ranges::find(result.planes, number, &PlaneEstimate::number);
   return found == result.planes.end() ? nullptr : &found->plane;
-}
-
-std::optional<Vector3d> point_on_plane(const Inspection& inspection,
-                                       int frame,
-                                       const Eigen::Vector2d& raw_px,
-                                       const Plane& plane) {
-  const auto& cameras = inspection.initialization->cameras;
-  if (frame < 0 || frame >= std::ssize(cameras)) return std::nullopt;
-  return intersect(plane, cameras[frame], rolling_camera(inspection, frame), raw_px);
 }
 
 ScaleSource scale_source(const Inspection& inspection) {

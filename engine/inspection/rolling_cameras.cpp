@@ -32,4 +32,13 @@ RollingCamera true_rolling_camera(const Inspection& inspection, int frame) {
   return camera;
 }
 
+std::optional<Eigen::Vector3d> point_on_plane(const Inspection& inspection,
+                                              int frame,
+                                              const Eigen::Vector2d& raw_px,
+                                              const Plane& plane) {
+  const auto& cameras = inspection.initialization->cameras;
+  if (frame < 0 || frame >= std::ssize(cameras)) return std::nullopt;
+  return intersect(plane, cameras[frame], rolling_camera(inspection, frame), raw_px);
+}
+
 }  // namespace gpo
