@@ -122,7 +122,8 @@ struct Inspection {
   std::optional<MeasuredScale> measured_scale = {};  ///< nullopt if it is not requested
   std::optional<ImportedResult> imported = {};       ///< nullopt unless another program's result
   std::optional<ChosenWorld> chosen_world = {};      ///< nullopt if it is not requested
-  /// Verdicts of the windows of 2, 3, ... frames from the same start, as the window grows.
+  /// Verdicts of the windows of 2, 3, ... frames from the same start, as the window grows, with the
+  /// row delay and the motion between rows of the result.
   std::vector<Verdict> growth;
   /// The same by the criterion of the whole window: wider where its own uncertainty is wider than
   /// that of its growth, because only the former compares image regions. Empty without both.

@@ -222,6 +222,12 @@ struct Inspector::Stages {
       if (options.camera_is_guess) std::ranges::for_each(inspection.growth, demote);
     }
     Finished end = finished(window, sources, options, inspection.growth, std::move(found));
+    if (!inspection.growth.empty() && end.initialization.ok && end.initialization.row_delay_s) {
+      inspection.growth = growing_verdicts(
+          as_seen_at_time_stamps(window, end.initialization), options.lens, request.stop);
+      if (request.stop.stop_requested()) return;
+      if (options.camera_is_guess) std::ranges::for_each(inspection.growth, demote);
+    }
     const bool whole = std::ssize(inspection.growth) + 1 == window.frame_count();
     if (whole && end.initialization.verdict) {
       inspection.comparable_growth = comparable(inspection.growth, *end.initialization.verdict);

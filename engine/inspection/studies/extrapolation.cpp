@@ -11,6 +11,7 @@
 #include <limits>
 
 #include <Eigen/LU>
+#include <Eigen/QR>
 #include <fmt/format.h>
 
 namespace gpo {
@@ -75,23 +76,25 @@ struct Path {
   std::vector<std::int64_t> timestamps_ns;
 };
 
-/// Returns the velocity at the end of a path, from its last two steps, without a derivative; zero
-/// with fewer.
+/// Returns the velocity at the end of a path by a parabola through its last poses; zero with fewer
+/// than three. With so few poses that each decides, its errors would grow from frame to frame.
 RowMotion motion_at_end(const Path& path) {
-  const std::size_t count = path.poses.size();
+  constexpr std::size_t kMostPoses = 7;
+  const std::size_t count = std::min(kMostPoses, path.poses.size());
   if (count < 3) return {};
-  const Pose &a = path.poses[count - 3], &b = path.poses[count - 2], &c = path.poses[count - 1];
-  const auto seconds = [&](std::size_t i) {
-    return 1e-9 * static_cast<double>(path.timestamps_ns[i] - path.timestamps_ns[i - 1]);
-  };
-  const double first_s = seconds(count - 2), last_s = seconds(count - 1);
-  const auto at_end = [&](const Vector3d& first, const Vector3d& last) -> Vector3d {
-    return last / last_s + (last / last_s - first / first_s) * last_s / (first_s + last_s);
-  };
-  const Vector3d rotation =
-      at_end(so3_log(a.R_wc.transpose() * b.R_wc), so3_log(b.R_wc.transpose() * c.R_wc));
-  const Vector3d translation_w = at_end(b.p_wc - a.p_wc, c.p_wc - b.p_wc);
-  return {.rotation_rad_s = rotation, .translation_s = c.R_wc.transpose() * translation_w};
+  const Pose& last = path.poses.back();
+  Eigen::MatrixXd powers(count, 3), values(count, 6);
+  for (std::size_t k = 0; k < count; ++k) {
+    const std::size_t i = path.poses.size() - count + k;
+    const double seconds =
+        1e-9 * static_cast<double>(path.timestamps_ns[i] - path.timestamps_ns.back());
+    const auto row = static_cast<Eigen::Index>(k);
+    powers.row(row) << 1, seconds, seconds * seconds;
+    values.row(row) << so3_log(last.R_wc.transpose() * path.poses[i].R_wc).transpose(),
+        (last.R_wc.transpose() * (path.poses[i].p_wc - last.p_wc)).transpose();
+  }
+  const Eigen::MatrixXd fit = powers.householderQr().solve(values);
+  return {.rotation_rad_s = fit.row(1).head<3>(), .translation_s = fit.row(1).tail<3>()};
 }
 
 /// Moves undistorted pixels to where the points would have been seen at the time stamp.

@@ -71,6 +71,52 @@ TEST(Extrapolation, StaysNearTheTruthWithNoiseAndOutliers) {
     EXPECT_LT((camera.pose.p_wc - noisy.cameras[camera.frame].p_wc).norm(), 0.02) << camera.frame;
 }
 
+constexpr double kLateRow_s = 6e-5;
+
+/// Returns the window of a camera that reads its rows one after the other, or all at once, by
+/// `gpo_joint`.
+std::shared_ptr<const Inspection> rolling_window(const Simulation& simulation, double row_delay_s) {
+  Recording recording = *simulated_recording(simulation);
+  recording.camera.readout = Readout{row_delay_s * (recording.camera.height - 1), 1e-4};
+  Settings settings{.frames = kKnown};
+  settings.options.rotations = RotationSource::truth;
+  return Inspector(std::make_shared<const Recording>(std::move(recording))).inspect(settings);
+}
+
+SimulationOptions brisk_orbit(double row_delay_s) {
+  return {.motion = Motion::orbit,
+          .frames = kAllFrames,
+          .noise_px = 0.1,
+          .travel = 0.8,
+          .row_delay_s = row_delay_s};
+}
+
+double worst_error(const Inspection& inspection, const Simulation& simulation) {
+  const auto after = extrapolate(std::make_shared<const Inspection>(inspection), 10);
+  double worst = after->cameras.size() == 10 ? 0 : 1;
+  for (const ExtrapolatedCamera& camera : after->cameras)
+    worst = std::max(worst, (camera.pose.p_wc - simulation.cameras[camera.frame].p_wc).norm());
+  return worst;
+}
+
+TEST(Extrapolation, FollowsTheRowsOfARollingShutter) {
+  const Simulation simulation = simulate(brisk_orbit(kLateRow_s));
+  Inspection inspection = *rolling_window(simulation, kLateRow_s);
+  ASSERT_TRUE(inspection.initialization->row_delay_s);
+  const double by_rows = worst_error(inspection, simulation);
+  inspection.row_motions.clear();
+  EXPECT_LT(by_rows, 0.005);
+  EXPECT_GT(worst_error(inspection, simulation), 3 * by_rows);
+}
+
+TEST(Growth, OfARollingShutterIsThatOfAGlobalOne) {
+  const auto late = rolling_window(simulate(brisk_orbit(kLateRow_s)), kLateRow_s);
+  const auto still = rolling_window(simulate(brisk_orbit(0)), 0);
+  ASSERT_EQ(late->growth.size(), still->growth.size());
+  for (std::size_t k = 5; k + 1 < late->growth.size(); ++k)
+    EXPECT_LT(*late->growth[k].normal_sigma_deg, 1.5 * *still->growth[k].normal_sigma_deg) << k;
+}
+
 TEST(Extrapolation, EndsWithItsTracksAndSaysWhy) {
   const auto after = extrapolate(inspected(simulated_recording(moving(0.2), 27)), 100);
   EXPECT_EQ(after->last_frame(), 26);
