@@ -109,7 +109,7 @@ TEST(Extrapolation, FollowsTheRowsOfARollingShutter) {
   EXPECT_GT(worst_error(inspection, simulation), 3 * by_rows);
 }
 
-TEST(Growth, OfARollingShutterIsThatOfAGlobalOne) {
+TEST(Growth, IsTheSameWithARollingShutter) {
   const auto late = rolling_window(simulate(brisk_orbit(kLateRow_s)), kLateRow_s);
   const auto still = rolling_window(simulate(brisk_orbit(0)), 0);
   ASSERT_EQ(late->growth.size(), still->growth.size());
