@@ -3,6 +3,7 @@
 #pragma once
 
 #include "engine/frontend/gyroscope_alignment.h"
+#include "engine/geometry/camera.h"
 
 #include <optional>
 #include <string>

@@ -170,7 +170,7 @@ cv::Size texture_size(const ExportScene& scene, const ScenePlane& plane) {
 
 /// Returns the raw pixel of a point in the reference image; beyond the image if it is not seen.
 Vector2d pixel_in_reference(const ExportScene& scene, const Vector3d& point) {
-  const Vector2d nowhere(-10, -10);
+  Vector2d nowhere(-10, -10);
   const Vector3d seen = to_camera(scene.cameras.front(), point);
   if (!(seen.z() > 1e-9)) return nowhere;
   const Vector2d pixel = project(exported_camera(scene, 0), seen);

@@ -64,7 +64,8 @@ double difference(const Pairs& pairs, const Eigen::Matrix3d& R_gyro_camera) {
 }
 
 constexpr double kSpan_s = 0.1;  // images determine rates over it far better than over frames
-constexpr double kWindow_s = 0.2, kStep_s = 0.0025;  // offsets of the clock that are tried
+constexpr int kSteps = 80;       // offsets of the clock that are tried, in both directions
+constexpr double kStep_s = 0.0025, kWindow_s = kSteps * kStep_s;
 constexpr double kFarBetter = 0.35;  // scatter of the differences, relative to the recorded one
 
 /// Scatter of the differences by the best other clock and by the best other axes [rad/s].
@@ -79,7 +80,8 @@ Alternatives alternatives_to(double recorded,
                              const GyroAlignment& given) {
   Alternatives best{recorded, recorded};
   const auto covered = pairs_at(integral, intervals, given.offset_s).images.cols();
-  for (double shift_s = -kWindow_s; shift_s <= kWindow_s; shift_s += kStep_s) {
+  for (int step = -kSteps; step <= kSteps; ++step) {
+    const double shift_s = step * kStep_s;
     const Pairs pairs = pairs_at(integral, intervals, given.offset_s + shift_s);
     if (pairs.images.cols() < covered) continue;
     if (const double one = difference(pairs, given.R); one < best.by_clock) {

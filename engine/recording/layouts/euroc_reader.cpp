@@ -37,7 +37,7 @@ void check_unit(const fs::path& file, const std::vector<std::int64_t>& times_ns,
          step_ns <= kShortestInMicroseconds ? "milliseconds" : "microseconds");
 }
 
-ImageList listed_images(CsvTable table, TimeUnit unit, const fs::path& folder) {
+ImageList listed_images(const CsvTable& table, TimeUnit unit, const fs::path& folder) {
   ImageList list;
   list.timestamps_ns = csv_time_stamps(table, unit);
   list.files.reserve(table.rows.size());
