@@ -6,6 +6,7 @@
 #include "engine/geometry/statistics.h"
 #include "engine/methods/certainty/shared_information.h"
 #include "engine/methods/common/window_checks.h"
+#include "engine/methods/plane/plane_result.h"
 
 #include <algorithm>
 #include <cmath>
@@ -55,11 +56,7 @@ double true_error_px(const Window& window,
   std::vector<double> errors_px;
   for (int i = 1; i < window.frame_count(); ++i) {
     if (!truth.cameras[i]) continue;
-    const Pose pose = inverse(reference) * *truth.cameras[i];
-    const Eigen::Matrix3d H =
-        window.K * pose.R_wc.transpose() *
-        (Eigen::Matrix3d::Identity() + pose.p_wc * plane.normal.transpose() / plane.distance) *
-        window.K.inverse();
+    const auto H = homography_of(window, inverse(reference) * *truth.cameras[i], plane);
     for (const int j : tracks) {
       const double error_px =
           (transfer(H, window.points_px[0].col(j)) - window.points_px[i].col(j)).norm();
@@ -67,6 +64,19 @@ double true_error_px(const Window& window,
     }
   }
   return errors_px.empty() ? std::numeric_limits<double>::infinity() : median(std::move(errors_px));
+}
+
+/// Returns the bound of the result's uncertainty, else that by its residuals.
+std::optional<double> bound_deg(const Initialization& result, const Window& window) {
+  if (result.uncertainty && result.uncertainty->bound_known_rotations_deg)
+    return result.uncertainty->bound_known_rotations_deg;
+  const auto errors = reprojection_errors_px(window, result.plane, result.cameras);
+  return normal_bound_deg(window,
+                          result.plane,
+                          result.cameras,
+                          noise_px(sum_of_squares(errors),
+                                   2.0 * static_cast<double>(errors.size()),
+                                   3.0 * window.frame_count() - 1));
 }
 
 }  // namespace
@@ -108,19 +118,7 @@ Evaluation evaluate(const Initialization& initialization,
     if (const auto& T = evaluation.T_true_est)
       evaluation.pne_aligned_deg = normal_angle_deg(T->R_ab * normal, truth.plane->normal);
   }
-  const auto& uncertainty = initialization.uncertainty;
-  if (uncertainty && uncertainty->bound_known_rotations_deg) {
-    evaluation.pne_bound_deg = uncertainty->bound_known_rotations_deg;
-    return evaluation;
-  }
-  const std::vector<double> errors =
-      reprojection_errors_px(window, initialization.plane, initialization.cameras);
-  evaluation.pne_bound_deg = normal_bound_deg(window,
-                                              initialization.plane,
-                                              initialization.cameras,
-                                              noise_px(sum_of_squares(errors),
-                                                       2.0 * static_cast<double>(errors.size()),
-                                                       3.0 * window.frame_count() - 1));
+  evaluation.pne_bound_deg = bound_deg(initialization, window);
   return evaluation;
 }
 

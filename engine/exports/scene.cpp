@@ -33,8 +33,7 @@ bool is_seen(const Window& window, const ScenePoint& point, int frame) {
 /// Returns the camera of a frame in the unit of the export.
 RollingCamera exported_camera(const ExportScene& scene, int frame) {
   RollingCamera camera = rolling_camera(scene.inspection, frame);
-  camera.motion.translation_s *= scene.world.T_world_reference.scale;
-  camera.motion.translation_s2 *= scene.world.T_world_reference.scale;
+  camera.motion = scaled(camera.motion, scene.world.T_world_reference.scale);
   return camera;
 }
 

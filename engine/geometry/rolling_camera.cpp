@@ -8,6 +8,12 @@
 
 namespace gpo {
 
+RowMotion scaled(RowMotion motion, double factor) {
+  motion.translation_s *= factor;
+  motion.translation_s2 *= factor;
+  return motion;
+}
+
 Pose pose_at_row(const RollingCamera& camera, const Eigen::Vector2d& raw_px) {
   const double half = 0.5 * readout_lines(camera.camera);
   const double row = std::clamp(row_from_middle(camera.camera, raw_px), -half, half);

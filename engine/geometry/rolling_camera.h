@@ -15,13 +15,13 @@ namespace gpo {
 
 /// A camera that moves while its rows are read. The time stamp is that of the middle row.
 struct RollingCamera {
-  /// Makes a global shutter. Keeps a reference.
-  RollingCamera(const Camera& of) : camera(of) {}  // NOLINT(google-explicit-constructor)
-
   const Camera& camera;
   double row_delay_s = 0;  ///< from one row to the next; 0: all rows at once
   RowMotion motion = {};
 };
+
+/// Returns the motion in another unit of length: `factor` of them are one of the given unit.
+RowMotion scaled(RowMotion motion, double factor);
 
 /// Returns the pose, in the camera's axes at the time stamp, from which the row of a pixel was
 /// read. Rows beyond the image are read with its first or last one.

@@ -25,8 +25,7 @@ RollingCamera true_rolling_camera(const Inspection& inspection, int frame) {
   const auto& reference = inspection.truth->cameras.front();
   const double unit =
       plane && reference ? std::abs(plane_in_camera(*plane, *reference).distance) : 1;
-  camera.motion.translation_s *= unit / inspection.initialization->plane.distance;
-  camera.motion.translation_s2 *= unit / inspection.initialization->plane.distance;
+  camera.motion = scaled(camera.motion, unit / inspection.initialization->plane.distance);
   if (const auto readout = readout_of_truth(inspection))
     camera.row_delay_s = readout->seconds / (readout_lines(camera.camera) - 1);
   return camera;

@@ -6,6 +6,7 @@
 #include "engine/geometry/plane.h"
 #include "engine/inspection/rolling_cameras.h"
 #include "engine/inspection/studies/studies.h"
+#include "engine/methods/plane/plane_result.h"
 
 #include <algorithm>
 #include <limits>

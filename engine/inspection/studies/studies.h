@@ -65,9 +65,6 @@ std::shared_ptr<const NormalStudy> study_normals(const Inspection& inspection,
 /// Returns the true normal in the reference camera, towards it; nullopt if unknown.
 std::optional<Eigen::Vector3d> true_normal(const Inspection& inspection);
 
-/// Returns H_i1 = K R_ciw (I - tau_i n^T) K^-1, undistorted, by the pose of camera i.
-Eigen::Matrix3d homography_of(const Window& window, const Pose& pose, const Plane& plane);
-
 /// Observation of a track, and its prediction from its plane, the poses and the reference frame.
 struct ResidualVector {
   int track;

@@ -189,12 +189,6 @@ std::string loss_of(const Tracks& tracks, int column) {
 
 }  // namespace
 
-Eigen::Matrix3d homography_of(const Window& window, const Pose& pose, const Plane& plane) {
-  const Eigen::Vector3d tau = -pose.p_wc / plane.distance;
-  return window.K * pose.R_wc.transpose() *
-         (Eigen::Matrix3d::Identity() - tau * plane.normal.transpose()) * window.K.inverse();
-}
-
 std::vector<ResidualVector> residual_vectors(const Inspection& inspection, int frame_in_window) {
   const Window& window = *inspection.window;
   const Initialization& result = *inspection.initialization;

@@ -43,6 +43,12 @@ PlaneMotion motion_of(const Initialization& result) {
   return motion;
 }
 
+Eigen::Matrix3d homography_of(const Window& window, const Pose& pose, const Plane& plane) {
+  const Eigen::Vector3d tau = -pose.p_wc / plane.distance;
+  return window.K * pose.R_wc.transpose() *
+         (Eigen::Matrix3d::Identity() - tau * plane.normal.transpose()) * window.K.inverse();
+}
+
 Initialization with_map_points(const Window& window, Initialization result) {
   result = trusted(window, std::move(result));
   if (!result.ok) return result;

@@ -20,6 +20,9 @@ std::vector<MapPoint> lift_to_plane(const Window& window,
 /// Returns the motion over all planes of a result, the main plane first.
 PlaneMotion motion_of(const Initialization& result);
 
+/// Returns H_i1 = K R_ciw (I - tau_i n^T) K^-1, undistorted, by the pose of camera i.
+Eigen::Matrix3d homography_of(const Window& window, const Pose& pose, const Plane& plane);
+
 /// Adds map points and RMS error to a result over a plane; a failure if it is not to be trusted.
 Initialization with_map_points(const Window& window, Initialization result);
 

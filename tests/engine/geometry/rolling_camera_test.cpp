@@ -16,7 +16,7 @@ Camera lens() {
 }
 
 RollingCamera brisk(const Camera& camera) {
-  RollingCamera rolling = camera;
+  RollingCamera rolling{camera};
   rolling.row_delay_s = 5e-5;
   rolling.motion = {.rotation_rad_s = {0.4, -1.1, 0.7},
                     .rotation_rad_s2 = {8, 5, -9},

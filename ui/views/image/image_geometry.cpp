@@ -330,8 +330,7 @@ Outlines contact_shadow(const Inspection& inspection,
 }
 
 Outlines horizon_in_image(RollingCamera camera, const Pose& pose, const Vector3d& up_w) {
-  camera.motion.translation_s.setZero();  // it is far away
-  camera.motion.translation_s2.setZero();
+  camera.motion = scaled(camera.motion, 0);  // it is far away
   constexpr int kDirections = 720;
   constexpr double kLeastDepth = 0.05;
   const Vector3d up_c = (pose.R_wc.transpose() * up_w).normalized();

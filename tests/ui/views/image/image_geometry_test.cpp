@@ -44,7 +44,7 @@ Vector2d project_with_opencv(const Camera& camera, const Pose& pose, const Vecto
 void expect_cube_agrees_with_opencv(const Camera& camera, const Inspection& inspection) {
   const auto corners = cube_corners(*inspection.cube, 0.3);
   for (const Pose& pose : inspection.initialization->cameras) {
-    const CubeImage cube = cube_in_image(camera, pose, corners);
+    const CubeImage cube = cube_in_image({camera}, pose, corners);
     ASSERT_EQ(cube.edges.size(), 12u);
     for (const CubeEdge& edge : cube.edges) {
       ASSERT_GT(edge.raw_px.size(), 10u);
@@ -75,7 +75,7 @@ TEST(ImageGeometry, CubeHidesItsFarEdges) {
   // Straight ahead from above two faces are visible, top and front.
   const Inspection inspection = made_inspection({.distorted = false});
   const CubeImage above =
-      cube_in_image(inspection.recording->camera, Pose(), cube_corners(*inspection.cube, 0.2));
+      cube_in_image({inspection.recording->camera}, Pose(), cube_corners(*inspection.cube, 0.2));
   EXPECT_EQ(hidden_edges(above), 5);
   for (const CubeFace& face : above.faces) EXPECT_FALSE(face.base && face.facing);
   // At its corner, from (4, 3, 2) towards the origin, three are.
@@ -85,7 +85,7 @@ TEST(ImageGeometry, CubeHidesItsFarEdges) {
   pose.p_wc = Vector3d(4, 3, 2);
   const Vector3d z = -pose.p_wc.normalized(), x = z.cross(Vector3d::UnitZ()).normalized();
   pose.R_wc << x, z.cross(x), z;
-  EXPECT_EQ(hidden_edges(cube_in_image(kPinhole, pose, cube_corners(anchor, 1))), 3);
+  EXPECT_EQ(hidden_edges(cube_in_image({kPinhole}, pose, cube_corners(anchor, 1))), 3);
 }
 
 /// A face from behind the camera to 0.5 in front of it, below the optical axis.
@@ -93,7 +93,7 @@ TEST(ImageGeometry, FaceThatPassesTheCameraIsCutNotLost) {
   CubeAnchor anchor;
   anchor.origin = Vector3d(0, 0.7, -0.5);
   for (const Camera& camera : {kCamera, kPinhole}) {
-    const CubeImage cube = cube_in_image(camera, Pose(), cube_corners(anchor, 1));
+    const CubeImage cube = cube_in_image({camera}, Pose(), cube_corners(anchor, 1));
     int drawn = 0;
     for (const CubeFace& face : cube.faces) {
       if (!face.facing || face.raw_px.empty()) continue;
@@ -116,7 +116,7 @@ TEST(ImageGeometry, CubeIsClippedInFrontOfTheCamera) {
   CubeAnchor anchor;
   const auto edges_at = [&](const Vector3d& origin) {
     anchor.origin = origin;
-    return cube_in_image(kCamera, Pose(), cube_corners(anchor, 1)).edges;
+    return cube_in_image({kCamera}, Pose(), cube_corners(anchor, 1)).edges;
   };
   for (const CubeEdge& edge : edges_at({0, 0, -5})) EXPECT_TRUE(edge.raw_px.empty());
   int drawn = 0;
@@ -173,7 +173,7 @@ TEST(ImageGeometry, TracksOfAFurtherPlaneHaveTheResidualsOfTheirPlane) {
 }
 
 TEST(Horizon, IsARowForALevelPinholeAndMovesWithTheCamera) {
-  const auto level = horizon_in_image(kPinhole, Pose{}, -Vector3d::UnitY());
+  const auto level = horizon_in_image({kPinhole}, Pose{}, -Vector3d::UnitY());
   ASSERT_EQ(level.size(), 1U);
   EXPECT_LT(level[0].front().x(), 15);
   EXPECT_GT(level[0].back().x(), 625);
@@ -182,17 +182,17 @@ TEST(Horizon, IsARowForALevelPinholeAndMovesWithTheCamera) {
   const double pitch = 10 * std::numbers::pi / 180;
   Pose down;
   down.R_wc = Eigen::AngleAxisd(-pitch, Vector3d::UnitX()).toRotationMatrix();
-  const auto raised = horizon_in_image(kPinhole, down, -Vector3d::UnitY());
+  const auto raised = horizon_in_image({kPinhole}, down, -Vector3d::UnitY());
   for (const Vector2d& pixel : raised.at(0))
     EXPECT_NEAR(pixel.y(), kPinhole.cy - kPinhole.fy * std::tan(pitch), 1e-9);
-  const auto upright = horizon_in_image(kPinhole, Pose{}, Vector3d::UnitX());
+  const auto upright = horizon_in_image({kPinhole}, Pose{}, Vector3d::UnitX());
   for (const Vector2d& pixel : upright.at(0)) EXPECT_NEAR(pixel.x(), kPinhole.cx, 1e-9);
-  EXPECT_TRUE(horizon_in_image(kPinhole, Pose{}, Vector3d::UnitZ()).empty());
+  EXPECT_TRUE(horizon_in_image({kPinhole}, Pose{}, Vector3d::UnitZ()).empty());
 }
 
 TEST(Horizon, IsBentByTheLensAsByOpenCv) {
   const Vector3d up = Vector3d(0.1, -1, 0.2).normalized();
-  const auto pieces = horizon_in_image(kCamera, Pose{}, up);
+  const auto pieces = horizon_in_image({kCamera}, Pose{}, up);
   ASSERT_FALSE(pieces.empty());
   for (const Outline& piece : pieces)
     for (const Vector2d& raw_px : piece) {
