@@ -3,7 +3,6 @@
 #include "app/commands/commands.h"
 
 #include "engine/base/error.h"
-#include "engine/files/output_file.h"
 #include "engine/files/text_file.h"
 
 #include <algorithm>
@@ -245,17 +244,9 @@ std::shared_ptr<const Recording> open(const InspectArguments& arguments) {
 }
 
 void check_not_overwritten(const Recording& recording, const std::vector<NamedFile>& outputs) {
-  for (const NamedFile& output : outputs) {
-    if (!output.path || is_standard_output(*output.path)) continue;
-    const auto is_output = [&](const fs::path& file) { return same_file(file, *output.path); };
-    if (std::ranges::any_of(recording.read_files, is_output) ||
-        std::ranges::any_of(recording.image_files, is_output))
-      throw InputError(
-          fmt::format("{}: {} belongs to the recording and would be overwritten; choose "
-                      "another file",
-                      output.option,
-                      output.path->string()));
-  }
+  for (const NamedFile& output : outputs)
+    if (output.path && !is_standard_output(*output.path))
+      check_not_overwritten(recording, *output.path);
 }
 
 void report_unused(std::span<const std::string> given,

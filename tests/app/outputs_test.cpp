@@ -69,5 +69,21 @@ TEST(Outputs, DoNotOverwriteWhatARecordingWasReadFrom) {
   for (int time = 0; time < 2; ++time) succeeding("run {} --frames 8 --json {}", copy, own);
 }
 
+TEST(Outputs, DoNotOverwriteItFromScripts) {
+  const fs::path folder = fresh_folder(), copy = folder / "desk", script = folder / "script.txt";
+  fs::copy(desk(), copy, fs::copy_options::recursive);
+  const fs::path gyroscope = copy / "mav0/imu0/data.csv", camera = copy / "mav0/cam0/sensor.yaml";
+  for (const auto& [line, file] : {std::pair("export trajectory ", gyroscope),
+                                   {"export ply ", camera},
+                                   {"export result ", camera}}) {
+    const std::string before = read_file(file);
+    write_file(script, line + file.string() + "\n");
+    expect_exit(2,
+                program("snapshot {} --frames 8 --script {}", copy, script),
+                "belongs to the recording and would be overwritten");
+    EXPECT_EQ(read_file(file), before) << line;
+  }
+}
+
 }  // namespace
 }  // namespace gpo::test

@@ -194,6 +194,15 @@ std::shared_ptr<const Recording> open_recording(const fs::path& path, const Open
   return std::make_shared<const Recording>(std::move(recording));
 }
 
+void check_not_overwritten(const Recording& recording, const fs::path& output) {
+  std::error_code none;
+  if (!fs::exists(output, none)) return;
+  const auto is_output = [&](const fs::path& file) { return fs::equivalent(file, output, none); };
+  if (std::ranges::any_of(recording.read_files, is_output) ||
+      std::ranges::any_of(recording.image_files, is_output))
+    refuse(output, "belongs to the recording and would be overwritten; choose another file");
+}
+
 std::span<const Layout> layouts() {
   static constexpr auto kLayouts = std::to_array<Layout>({{.title = "EuRoC",
                                                            .expected = "cam0/data.csv (EuRoC)",

@@ -88,6 +88,9 @@ void add_data_set_truth(Recording& recording, const fs::path& folder);
 std::shared_ptr<const Recording> open_recording(const fs::path& path,
                                                 const OpenOptions& options = {});
 
+/// Throws InputError if the recording was read from this file, so that it would be lost.
+void check_not_overwritten(const Recording& recording, const fs::path& output);
+
 /// An interval without varying rates and image motion, in which the mean rate is the bias.
 struct StationaryInterval {
   std::int64_t first_ns = 0;  ///< camera's clock

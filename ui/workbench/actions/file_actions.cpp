@@ -26,6 +26,7 @@ void expect_extension(const std::string& action, const fs::path& file, const cha
 void take_screenshot(State& state, const Arguments& arguments) {
   Screenshot shot{arguments[0]};
   expect_extension(arguments.action, shot.file, ".png");
+  check_output(state, shot.file);
   for (std::size_t i = 1; i < arguments.size(); ++i) {
     const bool size = std::isdigit(static_cast<unsigned char>(arguments[i].front())) != 0;
     if (size)
@@ -45,11 +46,13 @@ void export_video(State& state, const Arguments& arguments) {
         fmt::format("export-video: '{}', expected 1 to 240 frames per second", arguments[1]));
   if (state.requests.movie) throw InputError("export-video: another movie is being written");
   check_writable(movie.file);
+  check_output(state, movie.file);
   state.requests.movie = movie;
 }
 
 void write_text(State& state, const fs::path& file, const std::string& text) {
   check_writable(file);
+  check_output(state, file);
   write_file(file, text);
   say(state, "saved " + file.string());
 }
@@ -264,6 +267,7 @@ void add_images(const MenuRows& menu) {
            [](State& state, const Arguments& arguments) {
              expect_extension(arguments.action, arguments[0], ".html");
              if (!state.results.inspection) throw InputError("report: no result to write yet");
+             check_output(state, arguments[0]);
              state.requests.screenshots.push_back({arguments[0], kReportView});
            });
   menu.add({"export-video",

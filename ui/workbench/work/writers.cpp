@@ -6,6 +6,7 @@
 #include "engine/base/stop.h"
 #include "engine/files/refuse.h"
 #include "engine/files/text_file.h"
+#include "engine/recording/layouts/open_recording.h"
 
 #include <algorithm>
 #include <utility>
@@ -64,10 +65,15 @@ void synchronize(WorkbenchState& state, ExportWriter& writer) {
   }
 }
 
+void check_output(const WorkbenchState& state, const fs::path& file) {
+  if (state.document.recording) check_not_overwritten(*state.document.recording, file);
+}
+
 void request_export(WorkbenchState& state, const ExportFormat& format, const fs::path& path) {
   if (!state.results.inspection) throw InputError("no result to export yet");
   const ExportRequest request{&format, path};
   check_export(request);
+  check_output(state, path);
   state.requests.exports.push_back(
       {state.results.inspection,
        {.metric = state.document.metric, .cube_side = state.document.cube_side},

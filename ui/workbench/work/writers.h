@@ -21,6 +21,9 @@ using ExportWriter = TaskQueue<WrittenExport>;
 /// is removed.
 void synchronize(WorkbenchState& state, ExportWriter& writer);
 
+/// Throws InputError if the open recording was read from this file.
+void check_output(const WorkbenchState& state, const fs::path& file);
+
 /// Requests an export of the result as the window shows it, cubes included. Throws InputError
 /// without a result.
 void request_export(WorkbenchState& state, const ExportFormat& format, const fs::path& path);
