@@ -62,6 +62,8 @@ struct InitializeOptions {
   double accelerometer_bias_sigma_m_s2 = kAccelerometerBiasSigma_m_s2;
   /// Camera center from the IMU, in its axes [m]; nullopt: unknown, within some centimeters.
   std::optional<Eigen::Vector3d> p_gyro_camera_m = std::nullopt;
+  /// Keys of findings that do not lower the verdict (`checks()`).
+  std::vector<std::string> ignore_findings = {};
   MethodOptions method_options = {};
 
   bool operator==(const InitializeOptions&) const = default;

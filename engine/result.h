@@ -3,6 +3,7 @@
 #pragma once
 
 #include "engine/base/eigen_layout.h"
+#include "engine/diagnosis/finding.h"
 #include "engine/frontend/rotations.h"
 #include "engine/inertial/inertial_alignment.h"
 #include "engine/methods/common/initialization.h"
@@ -26,6 +27,7 @@ struct WindowResult {
   Window window;  ///< undistorted points, inliers, homographies, given rotations
   /// Gravity and metric scale; nullopt if the result is not ok or there are no accelerations.
   std::optional<InertialAlignment> inertial = std::nullopt;
+  std::vector<Finding> findings = {};  ///< the heaviest first; the verdict's reason is the first
 
   /// Returns whether the result is ok and the verdict on its window `ready`.
   bool is_ready() const;

@@ -83,6 +83,7 @@ std::string help_of(const Setting& setting) {
 
 std::string type_of(const Setting& setting) {
   if (setting.kind == SettingKind::choice) return "KEY";
+  if (setting.kind == SettingKind::keys) return "KEY,...";
   if (setting.kind == SettingKind::point_pair) return "X1,Y1,X2,Y2[,FRAME]";
   if (setting.kind == SettingKind::masks) return "KIND:X1,Y1,X2,Y2[,X3,Y3...][/...]";
   return fmt::format("{:g}..{:g}", setting.least, setting.most);

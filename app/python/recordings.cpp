@@ -70,6 +70,7 @@ py::object json_of_tracks(const TrackedWindow& tracked) {
   inspection.window = tracked.window;
   inspection.initialization = tracked.initialization;
   inspection.inertial = result.inertial;
+  inspection.findings = result.findings;
   return python_json(inspection);
 }
 

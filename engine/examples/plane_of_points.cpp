@@ -4,6 +4,7 @@
 #include <iostream>
 
 #include <Eigen/LU>
+#include <gpo/diagnosis/diagnosis.h>
 #include <gpo/geometry.h>
 #include <gpo/solvers.h>
 #include <gpo/version.h>

@@ -3,6 +3,7 @@
 #include "engine/inspection/inspection.h"
 
 #include "engine/base/error.h"
+#include "engine/diagnosis/diagnosis.h"
 #include "engine/geometry/statistics.h"
 #include "engine/pipeline/method_defaults.h"
 #include "engine/pipeline/pipeline.h"
@@ -296,20 +297,35 @@ std::string board_truth_note(const Inspection& inspection) {
 }
 
 std::vector<std::string> notes_of(const Inspection& inspection) {
-  const Window& window = *inspection.window;
-  auto notes = notes_of(truth_jumps(inspection), inspection.recording->timestamps_ns.front());
-  for (const auto& note :
-       {inspection.gyroscope_note, inspection.frames_note, board_truth_note(inspection)})
-    if (!note.empty()) notes.push_back(note);
+  std::vector<std::string> notes;
+  for (const Finding& finding : inspection.findings)
+    if (finding.level == Level::note) notes.push_back(text_of(finding));
+  return notes;
+}
+
+void add_findings(Inspection& inspection) {
+  std::vector<Remark> remarks;
+  const auto add = [&](std::string_view key, std::string sentence) {
+    if (!sentence.empty()) remarks.push_back({key, std::move(sentence)});
+  };
+  for (std::string& jump :
+       notes_of(truth_jumps(inspection), inspection.recording->timestamps_ns.front()))
+    add("truth-jump", std::move(jump));
+  add("truth-of-board", board_truth_note(inspection));
   if (const auto& e = inspection.evaluation;
       e && !e->pne_deg && inspection.truth->plane && inspection.truth->cameras.front())
-    notes.emplace_back("the ground truth describes another plane: no PNE and PDE");
-  if (const auto missing = missing_plane(window, inspection.settings.options); !missing.empty())
-    notes.push_back(fmt::format("{}; plane {} leads", missing, window.leader + 1));
-  for (const auto& reason : {inspection.measured_scale ? inspection.measured_scale->reason : "",
-                             inspection.chosen_world ? inspection.chosen_world->reason : ""})
-    if (!reason.empty()) notes.push_back(reason);
-  return notes;
+    add("truth-of-another-plane", "the ground truth describes another plane: no PNE and PDE");
+  if (inspection.measured_scale) add("unknown-scale", inspection.measured_scale->reason);
+  if (inspection.chosen_world) add("unknown-scale", inspection.chosen_world->reason);
+  const Evidence evidence{.remarks = remarks,
+                          .window = inspection.window.get(),
+                          .result = inspection.initialization.get(),
+                          .truth = inspection.truth.get(),
+                          .evaluation = inspection.evaluation ? &*inspection.evaluation : nullptr};
+  for (Finding& finding :
+       findings_of(evidence, {Of::inspection}, inspection.settings.options.ignore_findings))
+    inspection.findings.push_back(std::move(finding));
+  sort_by_level(inspection.findings);
 }
 
 }  // namespace gpo

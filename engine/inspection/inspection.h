@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "engine/diagnosis/finding.h"
 #include "engine/evaluation/evaluation.h"
 #include "engine/inertial/inertial_alignment.h"
 #include "engine/inspection/settings/settings_table.h"
@@ -101,9 +102,7 @@ struct Inspection {
   std::shared_ptr<const Recording> recording;
   Settings settings;
   RotationSource rotations_used = RotationSource::gyro;  ///< never automatic
-  std::string rotations_note;                            ///< see `ChosenRotations::note`
-  std::string gyroscope_note;    ///< why the gyroscope is not used as recorded; empty if it is
-  std::string frames_note = {};  ///< frames of the window that do not show the scene; empty: none
+  std::string rotations_note;  ///< see `ChosenRotations::note`
   std::optional<Eigen::Vector3d> gyroscope_bias_rad_s;  ///< subtracted from the rates
   std::shared_ptr<const Tracks> tracks;
   std::shared_ptr<const Window> window;
@@ -112,6 +111,8 @@ struct Inspection {
   std::shared_ptr<const Window> selection = nullptr;
   std::shared_ptr<const WindowTruth> truth;  ///< null if unknown
   std::shared_ptr<const Initialization> initialization;
+  /// What speaks against inputs and result, the heaviest first; also what the ground truth shows.
+  std::vector<Finding> findings = {};
   /// Motion of the estimated cameras around each frame; empty if no row delay is known.
   std::vector<RowMotion> row_motions = {};
   /// Gravity and metric scale; nullopt if the initialization failed, they are not requested, or the
@@ -225,9 +226,11 @@ std::vector<TruthJump> truth_jumps(const Inspection& inspection);
 /// determine its readout time; empty if neither.
 std::string board_truth_note(const Inspection& inspection);
 
-/// Returns one line for each remark on a result: a requested plane that does not exist, a jump of
-/// the ground truth, the readout time of a ground truth from a board.
+/// Returns the texts of the findings that leave the verdict.
 std::vector<std::string> notes_of(const Inspection& inspection);
+
+/// Adds the findings on the ground truth, on requested points and on settings without effect.
+void add_findings(Inspection& inspection);
 
 /// Result for one of many settings.
 struct Surveyed {

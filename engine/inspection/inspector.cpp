@@ -92,6 +92,19 @@ Sources sources_of(const Recording& recording,
   return sources;
 }
 
+/// Adds the verdicts of the growing window, judged by its findings.
+void add_growth(const Window& window,
+                std::span<const Verdict> numbers,
+                const Finished& end,
+                Inspection& inspection) {
+  inspection.growth = growth_verdicts(numbers, end.findings);
+  if (std::ssize(numbers) + 1 != window.frame_count()) return;
+  const Verdict& whole = *end.initialization.verdict;
+  inspection.comparable_growth = growth_verdicts(comparable_numbers(numbers, whole), end.findings);
+  if (!inspection.comparable_growth.empty()) inspection.comparable_growth.back() = whole;
+  inspection.growth.back() = whole;
+}
+
 std::optional<int> metric_scale_from(const Window& window,
                                      const Sources& sources,
                                      const InitializeOptions& options,
@@ -144,7 +157,7 @@ struct Inspector::Stages {
   Cached<int, std::vector<Eigen::Vector2d>> board_corners;  // in the reference image
   Cached<Settings, std::shared_ptr<const Window>> outliers;
   Cached<Settings, WindowRotations> rotations;
-  Cached<Settings, std::vector<Verdict>> growth;
+  Cached<Settings, std::vector<Verdict>> growth;  // numbers, not judged
   std::optional<RecordingFacts> facts;
 
   bool update_tracks(const Request& request) {
@@ -209,38 +222,33 @@ struct Inspector::Stages {
     inspection.timing = timing(settings, milliseconds_since(begin), found.solver.milliseconds);
     if (imports) inspection.imported = imported;
     add_own_noise(window, sources, options, stop, found);
+    std::vector<Verdict> numbers;
     if (!given.R_wc.empty()) {
       Settings acting = *rotations.key;
       acting.options.lens = options.lens;
       const bool grown = growth.update(acting, [&] {
-        auto verdicts = growing_verdicts(window, options.lens, request.stop);
-        return request.stop.stop_requested() ? std::nullopt : std::optional(std::move(verdicts));
+        auto found_numbers = growing_numbers(window, options.lens, request.stop);
+        return request.stop.stop_requested() ? std::nullopt
+                                             : std::optional(std::move(found_numbers));
       });
       if (!grown) return;
-      inspection.growth = growth.value;
+      numbers = growth.value;
       inspection.motion = frame_motion(window);
-      if (options.camera_is_guess) std::ranges::for_each(inspection.growth, demote);
     }
-    Finished end = finished(window, sources, options, inspection.growth, std::move(found));
-    if (!inspection.growth.empty() && end.initialization.ok && end.initialization.row_delay_s) {
-      inspection.growth = growing_verdicts(
+    const std::vector<Remark> remarks = remarks_on_window(settings, window);
+    Finished end = finished(window, sources, options, evidence(remarks), numbers, std::move(found));
+    if (!numbers.empty() && end.initialization.ok && end.initialization.row_delay_s) {
+      numbers = growing_numbers(
           as_seen_at_time_stamps(window, end.initialization), options.lens, request.stop);
       if (request.stop.stop_requested()) return;
-      if (options.camera_is_guess) std::ranges::for_each(inspection.growth, demote);
     }
-    const bool whole = std::ssize(inspection.growth) + 1 == window.frame_count();
-    if (whole && end.initialization.verdict) {
-      inspection.comparable_growth = comparable(inspection.growth, *end.initialization.verdict);
-      if (options.camera_is_guess) std::ranges::for_each(inspection.comparable_growth, demote);
-      inspection.growth.back() = *end.initialization.verdict;
-    }
+    add_growth(window, numbers, end, inspection);
     inspection.metric_scale_from = metric_scale_from(window, sources, settings.options, end);
     inspection.inertial = std::move(end.inertial);
     if (window.gyro) inspection.gyroscope_bias_rad_s = window.gyro->bias_rad_s;
     inspection.rotations_used = rotations.value.chosen.source;
     inspection.rotations_note = rotations.value.chosen.note;
-    inspection.gyroscope_note = rotations.value.note;
-    inspection.frames_note = frames_note(settings);
+    inspection.findings = std::move(end.findings);
     inspection.tracks = tracks.value;
     inspection.truth = truth.value;
     if (window.selection_row_delay_s != 0)
@@ -265,6 +273,26 @@ struct Inspector::Stages {
     };
     method = MethodChoice(std::make_shared<const Method>(std::move(bound)));
     return true;
+  }
+
+  Evidence evidence(const std::vector<Remark>& remarks) const {
+    return {.camera = &recording->camera,
+            .gyroscope = recording->gyroscope ? &*recording->gyroscope : nullptr,
+            .remarks = remarks,
+            .tracks = tracks.value.get(),
+            .ids = tracks.value->ids};
+  }
+
+  std::vector<Remark> remarks_on_window(const Settings& settings, const Window& window) const {
+    std::vector<Remark> remarks;
+    const auto add = [&](std::string_view key, std::string sentence) {
+      if (!sentence.empty()) remarks.push_back({key, std::move(sentence)});
+    };
+    add("gyroscope-misfit", rotations.value.note);
+    add("faulty-frames", frames_note(settings));
+    if (const auto missing = missing_plane(window, settings.options); !missing.empty())
+      add("missing-plane", fmt::format("{}; plane {} leads", missing, window.leader + 1));
+    return remarks;
   }
 
   std::string frames_note(const Settings& settings) const {
@@ -361,6 +389,7 @@ std::shared_ptr<const Inspection> Inspector::inspect(const Settings& settings,
       inspection.true_cube =
           place(*truth->plane, *truth->cameras.front(), true_rolling_camera(inspection, 0));
   }
+  add_findings(inspection);
   return std::make_shared<const Inspection>(std::move(inspection));
 }
 

@@ -5,7 +5,6 @@
 #include "engine/base/error.h"
 #include "engine/methods/certainty/jackknife.h"
 #include "engine/methods/certainty/uncertainty.h"
-#include "engine/methods/certainty/window_evidence.h"
 #include "engine/methods/initializers.h"
 #include "engine/methods/plane/linear_solutions.h"
 
@@ -37,57 +36,6 @@ void add_planes(const Window& window, Initialization& result) {
   result.planes.push_back({window.leader, result.plane});
   for (const auto& [number, m] : other_planes(window, motion_of(result.plane, result.cameras)))
     result.planes.push_back({number, {m.normalized(), result.plane.distance / m.norm()}});
-}
-
-/// Completes the reason of a verdict: by the uncertainty with an exact lens, or if it is not ready
-/// by a late clock or the rolling shutter as the main cause, or if it is weak by the lens, the
-/// surface or the camera model.
-void explain(const Uncertainty& u, Lens lens, Verdict& verdict) {
-  constexpr double kMainShare = 0.7;  // about half of the variance
-  const double sigma_deg = normal_sigma_deg(u, lens);
-  if (verdict.readiness == Readiness::ready && sigma_deg > u.normal_sigma_deg)
-    verdict.reason += fmt::format("; {:.2f} deg if the lens is exact", u.normal_sigma_deg);
-  const auto is_main = [&](const std::optional<double>& part_deg) {
-    return part_deg && *part_deg >= kMainShare * sigma_deg;
-  };
-  if (verdict.readiness != Readiness::ready && is_main(u.clock_sigma_deg)) {
-    verdict.reason = fmt::format(
-        "the clock of the gyroscope is about {:+.0f} ms off: use gpo_joint, or calibrate it",
-        1e3 * *u.late_s);
-    return;
-  }
-  if (verdict.readiness != Readiness::ready && is_main(u.shutter_sigma_deg) &&
-      u.neglected_row_delay_s) {
-    verdict.reason = fmt::format(
-        "rolling shutter, {:.1f} us from row to row, which the method does not know: use gpo_joint",
-        1e6 * *u.neglected_row_delay_s);
-    return;
-  }
-  if (verdict.readiness != Readiness::weak) return;
-  if (u.normal_sigma_deg < kMainShare * sigma_deg &&
-      verdict.largest_translation > kReadyTranslation)
-    verdict.reason = fmt::format(
-        "plane normal only known to {:.2f} deg with a typical calibration ({:.2f} deg with an "
-        "exact lens): calibrate the camera",
-        sigma_deg,
-        u.normal_sigma_deg);
-  else if (is_main(u.bend_sigma_deg))
-    verdict.reason =
-        fmt::format("uneven surface or lens error: the normal varies by {:.2f} deg over the plane",
-                    *u.bend_sigma_deg);
-  else if (is_main(u.neighbors_sigma_deg))
-    verdict.reason = fmt::format(
-        "image regions disagree by {:.2f} deg (lens, rolling shutter or uneven surface)",
-        *u.neighbors_sigma_deg);
-}
-
-/// Lowers `ready` to `weak` for a method whose result depends on a few tracks: its uncertainty is
-/// that of the tracks, which says nothing about its own errors.
-void doubt(Verdict& verdict) {
-  if (verdict.readiness != Readiness::ready) return;
-  verdict.readiness = Readiness::weak;
-  verdict.reason =
-      "without a tenth of the tracks the method mostly fails or finds another plane normal";
 }
 
 std::vector<Method> our_methods() {
@@ -182,70 +130,18 @@ std::optional<NoiseSpread> own_noise(const Method& method,
   });
 }
 
-constexpr double kMostBend_deg = 12;  // a surface whose normal varies more is no plane
-
-/// An uneven surface makes a window weak, not degenerate: a longer path would not help.
-Verdict judged_with_bend(const WindowEvidence& evidence,
-                         const std::optional<Uncertainty>& u,
-                         Lens lens,
-                         double travel) {
-  if (!u) return judged(evidence, std::nullopt, travel);
-  const double sigma_deg = normal_sigma_deg(*u, lens);
-  Verdict verdict = judged(evidence, sigma_deg, travel);
-  if (verdict.readiness != Readiness::degenerate || !u->bend_sigma_deg || sigma_deg > kMostBend_deg)
-    return verdict;
-  const double flat_deg2 = std::pow(sigma_deg, 2) - std::pow(*u->bend_sigma_deg, 2);
-  const Verdict flat = judged(evidence, std::sqrt(std::max(0.0, flat_deg2)), travel);
-  if (flat.readiness != Readiness::degenerate) verdict.readiness = Readiness::weak;
-  return verdict;
-}
-
-Verdict verdict_on(const Window& window, const Initialization& result, Lens lens) {
-  const auto& u = result.uncertainty;
-  double travel = 0;
-  for (const Pose& camera : result.cameras) travel = std::max(travel, camera.p_wc.norm());
-  Verdict verdict = judged_with_bend(evidence_of(window), u, lens, travel / result.plane.distance);
-  if (u) explain(*u, lens, verdict);
-  verdict.scene = scene_of(window);
-  verdict.criterion = scene_criterion(window, result.cameras, verdict.noise_px.value_or(0));
-  return verdict;
-}
-
-std::vector<Verdict> comparable(std::span<const Verdict> growth, const Verdict& whole) {
-  if (growth.empty() || !growth.back().normal_sigma_deg || !whole.normal_sigma_deg) return {};
-  const double ratio = std::max(1.0, *whole.normal_sigma_deg / *growth.back().normal_sigma_deg);
-  std::vector<Verdict> verdicts(growth.begin(), growth.end());
-  for (Verdict& verdict : verdicts)
-    if (verdict.normal_sigma_deg)
-      verdict = judged(verdict.noise_px.value_or(0),
-                       verdict.rotation_rms_px.value_or(0),
-                       ratio * *verdict.normal_sigma_deg,
-                       verdict.largest_translation.value_or(0));
-  verdicts.back() = whole;
-  return verdicts;
-}
-
-Initialization assessed(const Method& method,
-                        const Window& window,
-                        Initialization result,
-                        Lens lens) {
-  if (!result.ok) return result;
+Initialization with_uncertainty(const Method& method, const Window& window, Initialization result) {
   if (!result.transfer_rms_px) set_fit_errors(window, result);
   auto& uncertainty = result.uncertainty;
   if (method.rotations)
     uncertainty = uncertainty_by_tracks(*method.rotations, window, result);
   else if (uncertainty)
     uncertainty->own = true;
-  const bool unstable = result.own_noise && result.own_noise->unstable;
-  if (uncertainty && result.own_noise && !unstable)
+  if (uncertainty && result.own_noise && !result.own_noise->unstable)
     uncertainty = with_own_noise(std::move(*uncertainty), result.plane, *result.own_noise);
-  result.verdict = verdict_on(window, result, lens);
-  if (unstable) doubt(*result.verdict);
   if (result.planes.empty() && !window.planes.empty()) add_planes(window, result);
   set_plane_uncertainties(result);
-  if (result.verdict->readiness != Readiness::degenerate) return result;
-  const std::string reason = result.verdict->reason;
-  return refused(reason, std::move(result));
+  return result;
 }
 
 std::vector<std::string> readers_of(const std::string& option) {

@@ -119,20 +119,7 @@ std::optional<NoiseSpread> own_noise(const Method& method,
                                      const std::function<Initialization(const Window&)>& initialize,
                                      const Watch& watch);
 
-/// Returns the verdict on a window by the result of a method and its uncertainty.
-Verdict verdict_on(const Window& window, const Initialization& result, Lens lens);
-
-/// Returns the verdicts of a growing window, whose last one was made by the growth, by the
-/// criterion of the whole window: each uncertainty times the ratio of the whole window's to that of
-/// the last one, if it is above 1. The last verdict is `whole`. Empty if one of both has no
-/// uncertainty.
-std::vector<Verdict> comparable(std::span<const Verdict> growth, const Verdict& whole);
-
-/// Adds the uncertainty and the verdict on the window to a method's result. The result of a
-/// degenerate window becomes a failure.
-Initialization assessed(const Method& method,
-                        const Window& window,
-                        Initialization result,
-                        Lens lens = Lens::typical);
+/// Adds the uncertainty and the errors of the fit to a method's result that is ok.
+Initialization with_uncertainty(const Method& method, const Window& window, Initialization result);
 
 }  // namespace gpo

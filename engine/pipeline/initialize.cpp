@@ -99,6 +99,7 @@ void check_options(const InitializeOptions& options) {
   const Method& method = options.method.row();
   if (!method.initialize && !method.initialize_from)
     throw SettingError("method", method.key + " has no function");
+  check_ignored(options.ignore_findings);
   const Eigen::Vector3d lever_m = options.p_gyro_camera_m.value_or(Eigen::Vector3d::Zero());
   check_options(std::to_array<Limit>(
       {{"ransac_threshold_px", options.ransac_threshold_px.value_or(1), {1e-9, 1e9, "more than 0"}},
@@ -267,7 +268,6 @@ WindowResult initialize(const Camera& camera,
   const ChosenRotations& chosen = rotations.chosen;
 
   WindowResult result;
-  result.ids = std::move(tracks.ids);
   result.rotations = chosen.source;
   const bool lacks_samples = gyroscope != nullptr && gyro == nullptr && R_wc.empty();
   result.rotations_note = joined(lacks_samples ? kNoSamples : rotations.note, chosen.note);
@@ -280,12 +280,14 @@ WindowResult initialize(const Camera& camera,
                              : failed(missing);
   add_own_noise(result.window, sources, options, stop, found);
   std::vector<Verdict> growth;
-  const bool needs_growth =
-      missing.empty() && !found.ok && !found.verdict && !chosen.rotations.R_wc.empty();
-  if (needs_growth) growth = growing_verdicts(result.window, options.lens, stop);
-  Finished end = finished(result.window, sources, options, growth, std::move(found));
+  const bool needs_growth = missing.empty() && !found.ok && !chosen.rotations.R_wc.empty();
+  if (needs_growth) growth = growing_numbers(result.window, options.lens, stop);
+  const Evidence known{.camera = &camera, .gyroscope = gyro, .tracks = &tracks, .ids = tracks.ids};
+  Finished end = finished(result.window, sources, options, known, growth, std::move(found));
   result.initialization = std::move(end.initialization);
   result.inertial = std::move(end.inertial);
+  result.findings = std::move(end.findings);
+  result.ids = std::move(tracks.ids);
   return result;
 }
 

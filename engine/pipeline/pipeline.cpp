@@ -8,6 +8,7 @@
 #include "engine/frontend/readout_compensation.h"
 #include "engine/methods/certainty/growth.h"
 #include "engine/methods/certainty/uncertainty.h"
+#include "engine/methods/certainty/window_evidence.h"
 #include "engine/methods/common/window_checks.h"
 #include "engine/pipeline/method_defaults.h"
 
@@ -58,41 +59,6 @@ std::string why_not_covered_by(const Gyroscope& gyroscope, const Window& window)
       gyroscope, times.front() + gyroscope.time_offset_ns, times.back() + gyroscope.time_offset_ns);
 }
 
-/// Completes a result without verdict: with that of the whole window as it grew, or that there is
-/// no plane.
-void complete_verdict(const Window& window,
-                      std::span<const Verdict> growth,
-                      Initialization& result) {
-  if (!result.verdict && static_cast<int>(growth.size()) == window.frame_count() - 1 &&
-      !growth.empty())
-    result.verdict = growth.back();
-  if (window.inliers == Inliers::planes && window.planes.empty()) {
-    Verdict verdict;
-    verdict.readiness = Readiness::no_plane;
-    verdict.reason = result.reason;
-    verdict.scene = SceneKind::no_plane;
-    result.verdict = std::move(verdict);
-  }
-  if (result.ok || !result.verdict) return;
-  Verdict& verdict = *result.verdict;
-  if (verdict.readiness == Readiness::weak) verdict.reason = "the method failed; " + verdict.reason;
-  if (verdict.readiness == Readiness::ready) {
-    verdict.readiness = Readiness::weak;
-    verdict.reason = "the method failed, although " + verdict.reason;
-  }
-}
-
-/// Replaces the advice to move farther: with a wrong lens no path determines the normal. A guess is
-/// no typical calibration.
-void blame_guess(std::string& reason) {
-  constexpr std::pair<std::string_view, std::string_view> kReplaced[] = {
-      {"use a longer camera path", "the camera is a guess, calibrate it"},
-      {"with a typical calibration", "because the camera is a guess"}};
-  for (const auto& [old, now] : kReplaced)
-    if (const auto at = reason.find(old); at != std::string::npos)
-      reason.replace(at, old.size(), now);
-}
-
 Initialization run(const Window& window,
                    const Sources& sources,
                    const InitializeOptions& options,
@@ -102,17 +68,18 @@ Initialization run(const Window& window,
                                 : method.initialize(window, options.method_options, watch);
 }
 
-void add_gravity(const Window& window,
-                 const Sources& sources,
-                 const InitializeOptions& options,
-                 Finished& end) {
-  if (!end.initialization.ok || options.gravity == Gravity::off || sources.gyroscope == nullptr ||
-      sources.gyroscope->accelerations_m_s2.empty())
-    return;
-  end.poses = uncertain_poses(window, end.initialization);
-  end.inertial = find_gravity(window, sources, end.poses, options, end.initialization);
-  if (end.inertial->joint)
-    end.initialization.verdict = verdict_on(window, end.initialization, options.lens);
+bool has_accelerations(const Sources& sources) {
+  return sources.gyroscope != nullptr && !sources.gyroscope->accelerations_m_s2.empty();
+}
+
+/// Returns the numbers of the window for its verdict: by the result, else as the window grew.
+Verdict numbers_for(const Window& window,
+                    std::span<const Verdict> growth,
+                    const Initialization& result,
+                    Lens lens) {
+  if (result.ok) return window_numbers(window, result, lens);
+  const bool whole = std::ssize(growth) == window.frame_count() - 1 && !growth.empty();
+  return whole ? growth.back() : Verdict{};
 }
 
 void set_readout(const Camera& camera, const Tracks& tracks, Window& window) {
@@ -283,35 +250,43 @@ void add_own_noise(const Window& window,
   result.own_noise = own_noise(options.method.row(), window, result, again, watch);
 }
 
-std::vector<Verdict> growing_verdicts(const Window& window,
-                                      Lens lens,
-                                      const std::stop_token& stop) {
-  std::vector<Verdict> verdicts;
-  for (GrowthStep& step : grow(window, lens, stop)) verdicts.push_back(std::move(step.verdict));
-  return verdicts;
+std::vector<Verdict> growing_numbers(const Window& window, Lens lens, const std::stop_token& stop) {
+  std::vector<Verdict> numbers;
+  for (GrowthStep& step : grow(window, lens, stop)) numbers.push_back(std::move(step.numbers));
+  return numbers;
 }
 
 Finished finished(const Window& window,
                   const Sources& sources,
                   const InitializeOptions& options,
+                  Evidence known,
                   std::span<const Verdict> growth,
                   Initialization result) {
-  Finished end{assessed(options.method.row(), window, std::move(result), options.lens)};
-  add_gravity(window, sources, options, end);
-  if (options.lens == Lens::typical) add_typical_lens(end.initialization);
-  complete_verdict(window, growth, end.initialization);
-  if (options.camera_is_guess) {
-    blame_guess(end.initialization.reason);
-    if (end.initialization.verdict) demote(*end.initialization.verdict);
+  const Method& method = options.method.row();
+  Finished end;
+  Initialization& found = end.initialization;
+  found = result.ok ? with_uncertainty(method, window, std::move(result)) : std::move(result);
+  Verdict numbers = numbers_for(window, growth, found, options.lens);
+  known.window = &window;
+  known.numbers = &numbers;
+  known.method = &method;
+  known.camera_is_guess |= options.camera_is_guess;
+  known.lens = options.lens;
+  known.result = &found;
+  const bool determined =
+      found.ok && heaviest(findings_of(known, {Of::length})) < Level::degenerate;
+  if (determined && options.gravity != Gravity::off && has_accelerations(sources)) {
+    end.poses = uncertain_poses(window, found);
+    end.inertial = find_gravity(window, sources, end.poses, options, found);
+    known.inertial = &*end.inertial;
+    if (end.inertial->joint) numbers = window_numbers(window, found, options.lens);
   }
+  if (options.lens == Lens::typical) add_typical_lens(found);
+  end.findings = findings_of(
+      known, {Of::recording, Of::window, Of::length, Of::result}, options.ignore_findings);
+  found = judged(verdict_of(end.findings, known), std::move(found));
+  if (!found.ok) end.inertial.reset();
   return end;
-}
-
-void demote(Verdict& verdict) {
-  blame_guess(verdict.reason);
-  if (verdict.readiness != Readiness::ready) return;
-  verdict.readiness = Readiness::weak;
-  verdict.reason = "the camera is a guess: calibrate it";
 }
 
 }  // namespace gpo

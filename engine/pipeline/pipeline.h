@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "engine/diagnosis/diagnosis.h"
 #include "engine/frontend/inliers.h"
 #include "engine/frontend/rotations.h"
 #include "engine/inertial/inertial_alignment.h"
@@ -24,7 +25,7 @@ namespace gpo {
 
 // The stages from tracks to a verdict, in their order; each takes and returns plain values:
 //
-//   window_of, window_rotations, with_rotations, run_method, add_own_noise, growing_verdicts,
+//   window_of, window_rotations, with_rotations, run_method, add_own_noise, growing_numbers,
 //   finished
 //
 // `initialize`, and with it the live `LiveInitializer`, runs them in a row. An Inspector runs the
@@ -120,8 +121,8 @@ void add_own_noise(const Window& window,
                    const std::stop_token& stop,
                    Initialization& result);
 
-/// Returns the verdicts of the windows of 2, 3, ... frames, as the window grows.
-std::vector<Verdict> growing_verdicts(const Window& window, Lens lens, const std::stop_token& stop);
+/// Returns the numbers for the verdicts on the windows of 2, 3, ... frames, as the window grows.
+std::vector<Verdict> growing_numbers(const Window& window, Lens lens, const std::stop_token& stop);
 
 /// Estimates gravity and metric scale from a successful result and its poses. `Gravity::joint`
 /// moves the result (planes, poses, bias and their covariances) to where images and accelerations
@@ -139,17 +140,17 @@ struct Finished {
   /// there is no accelerometer.
   std::optional<InertialAlignment> inertial = std::nullopt;
   UncertainPoses poses = {};  ///< input of `inertial`
+  std::vector<Finding> findings = {};
 };
 
-/// Assesses a method's result, finds gravity and completes the verdict. `growth` gives a failed
-/// result its verdict; it may be empty if the result is ok or has one.
+/// Completes a method's result: its uncertainty, gravity, and the verdict by all findings. `known`
+/// is the evidence besides window and result. `growth` gives a failed result its numbers; it may be
+/// empty if the result is ok.
 Finished finished(const Window& window,
                   const Sources& sources,
                   const InitializeOptions& options,
+                  Evidence known,
                   std::span<const Verdict> growth,
                   Initialization result);
-
-/// Lowers `ready` to `weak`, because a guessed lens may be wrong however well it fits.
-void demote(Verdict& verdict);
 
 }  // namespace gpo

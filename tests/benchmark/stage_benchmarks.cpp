@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Stages of the engine by themselves: front end, planes of a room, gravity, live initialization and
 // whole experiments. Most use the bundled recording, 640x480.
+#include "engine/diagnosis/diagnosis.h"
 #include "engine/experiment/runner.h"
 #include "engine/frontend/inliers.h"
 #include "engine/frontend/tracking/tracker.h"

@@ -5,6 +5,7 @@
 #include <iostream>
 #include <vector>
 
+#include <gpo/diagnosis/diagnosis.h>
 #include <gpo/geometry.h>
 #include <gpo/live.h>
 #include <gpo/result.h>

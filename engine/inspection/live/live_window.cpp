@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/inspection/live/live_window.h"
 
+#include "engine/diagnosis/limits.h"
 #include "engine/inspection/inspector.h"
-#include "engine/methods/certainty/window_evidence.h"
 
 #include <algorithm>
 #include <utility>
@@ -13,9 +13,6 @@
 
 namespace gpo {
 namespace {
-
-/// Normal uncertainty above which `judged` calls a window weak [deg].
-constexpr double kLiveSigma_deg = 0.5;
 
 /// Returns the settings without chosen points and tracks.
 Settings settings_of_live(Settings settings, int frames) {
@@ -161,7 +158,7 @@ std::string missing_for_ready(const Inspection& inspection) {
   const auto baseline = baseline_of(inspection);
   if (!baseline) return why;
   const double sigma_deg = normal_sigma_deg(inspection).value_or(0);
-  const double needed = std::max(kReadyTranslation, *baseline * sigma_deg / kLiveSigma_deg);
+  const double needed = std::max(kReadyTranslation, *baseline * sigma_deg / kWeakSigma_deg);
   if (needed > *baseline)
     return fmt::format("move sideways: baseline {:.2g} d, needs about {:.2g} d", *baseline, needed);
   if (inspection.recording->camera_source == CameraSource::guess && found.ok)

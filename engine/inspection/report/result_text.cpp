@@ -73,6 +73,28 @@ std::string normal_text(const Uncertainty& u, CameraSource source) {
       u.lens_sigma_deg.value_or(0) > 0 ? sigma_text(*u.lens_sigma_deg, 3) + " of it" : "exact");
 }
 
+std::string verdict_text(const Verdict& verdict) {
+  const std::string word = to_string(verdict.readiness);
+  return row("verdict",
+             verdict.reason.starts_with(word) ? verdict.reason : word + ": " + verdict.reason);
+}
+
+/// Returns the findings that lower the verdict, with their keys.
+std::string findings_text(std::span<const Finding> findings) {
+  std::string text;
+  for (const Finding& finding : findings) {
+    if (finding.level == Level::note) continue;
+    text += row("finding",
+                "{}: {} ({}{}{})",
+                to_string(finding.level),
+                text_of(finding),
+                finding.key,
+                finding.command.empty() ? "" : "; script: ",
+                finding.command);
+  }
+  return text;
+}
+
 std::string uncertainty_text(const Initialization& result, CameraSource source) {
   std::string text;
   if (result.uncertainty) text += row("uncertainty", normal_text(*result.uncertainty, source));
@@ -242,12 +264,7 @@ std::string to_text(const Inspection& inspection) {
                      row("status", result.ok ? "ok" : "failed: " + result.reason) +
                      row("inliers", "{} of {} {}", inliers, tracks, inliers_note(inspection));
   for (const std::string& note : notes_of(inspection)) text += row("note", note);
-  if (result.verdict) {
-    const std::string word = to_string(result.verdict->readiness);
-    text += row("verdict",
-                result.verdict->reason.starts_with(word) ? result.verdict->reason
-                                                         : word + ": " + result.verdict->reason);
-  }
+  if (result.verdict) text += verdict_text(*result.verdict) + findings_text(inspection.findings);
   if (result.ok) {
     text += row("normal",
                 "{:.5f}  (reference camera; distance = 1)",

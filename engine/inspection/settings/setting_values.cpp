@@ -1,6 +1,7 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/base/error.h"
+#include "engine/diagnosis/diagnosis.h"
 #include "engine/files/text_file.h"
 #include "engine/inspection/settings/settings_table.h"
 #include "engine/methods/methods.h"
@@ -46,6 +47,15 @@ SettingValue ids_from(const Setting& setting, const std::string& text) {
   for (const std::string& one : split(text + ",", ','))
     ids.insert(std::get<std::int64_t>(in_range(setting, one, parse_integer(one), 0, kLargestId)));
   return std::vector(ids.begin(), ids.end());
+}
+
+SettingValue keys_from(const std::string& text) {
+  if (text == kNone) return std::vector<std::string>();
+  const std::vector<std::string> given = split(text, ',');
+  const std::set<std::string> keys(given.begin(), given.end());
+  const std::vector<std::string> sorted(keys.begin(), keys.end());
+  check_ignored(sorted);
+  return sorted;
 }
 
 SettingValue point_pair_from(const Setting& setting, const std::string& text) {
@@ -212,6 +222,9 @@ std::string value_text(const SettingValue& value) {
     std::string operator()(const std::vector<std::int64_t>& ids) const {
       return ids.empty() ? kNone : fmt::format("{}", fmt::join(ids, ","));
     }
+    std::string operator()(const std::vector<std::string>& keys) const {
+      return keys.empty() ? kNone : fmt::format("{}", fmt::join(keys, ","));
+    }
     std::string operator()(const Masks& masks) const {
       std::vector<std::string> areas;
       for (const Mask& mask : masks.areas) areas.push_back(mask.text());
@@ -241,6 +254,8 @@ SettingValue value_from(const Setting& setting,
       return choice_from(setting, text, methods);
     case ids:
       return ids_from(setting, text);
+    case keys:
+      return keys_from(text);
     case point_pair:
       return point_pair_from(setting, text);
     case masks:

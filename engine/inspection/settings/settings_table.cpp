@@ -34,6 +34,7 @@ constexpr SettingKind kind_of() {
   if constexpr (Choice<T> || std::is_same_v<T, MethodChoice>) return SettingKind::choice;
   if constexpr (std::is_same_v<T, bool>) return SettingKind::on_off;
   if constexpr (std::is_same_v<T, double>) return SettingKind::number;
+  if constexpr (std::is_same_v<T, std::vector<std::string>>) return SettingKind::keys;
   if constexpr (std::is_same_v<T, PointPair>) return SettingKind::point_pair;
   if constexpr (std::is_same_v<T, Masks>) return SettingKind::masks;
   return kIsWhole<T> ? SettingKind::whole : SettingKind::ids;
@@ -206,6 +207,14 @@ void add_inlier_rows(std::vector<Setting>& rows) {
                       .help = "Areas of the reference frame in the recorded, distorted image [px]: "
                               "not:X1,Y1,X2,Y2 leaves out tracks in a rectangle, plane:X1,Y1,X2,"
                               "Y2,X3,Y3,... finds plane 1 in a polygon only; / between several",
+                      .advanced = true,
+                      .by_hand = true}));
+  rows.push_back(row([](auto& s) -> auto& { return s.options.ignore_findings; },
+                     {.key = "ignore_findings",
+                      .title = "Ignored findings",
+                      .help = "Keys of findings that do not lower the verdict, with commas; "
+                              "`findings` lists them",
+                      .stage = SettingStage::initialization,
                       .advanced = true,
                       .by_hand = true}));
 }

@@ -115,11 +115,12 @@ using SettingValue = std::variant<std::monostate,
                                   double,
                                   std::string,
                                   std::vector<std::int64_t>,
+                                  std::vector<std::string>,
                                   PointPair,
                                   Masks>;
 
 /// How a setting is typed, shown and stored.
-enum class SettingKind { on_off, whole, number, choice, ids, point_pair, masks };
+enum class SettingKind { on_off, whole, number, choice, ids, keys, point_pair, masks };
 
 /// Readers of a setting: all; the built-in front end; the test whether a track is an inlier; the
 /// methods that list it among their options (`Method::reads`); the estimation of gravity

@@ -190,7 +190,7 @@ std::vector<GrowthStep> grow(const Window& window, Lens lens, const std::stop_to
   for (std::size_t k = 0; k < steps.size(); ++k) {
     auto sigma_deg = grounds[k].normal_sigma_deg;
     if (sigma_deg) sigma_deg = std::hypot(beyond.factor * *sigma_deg, beyond.lens_deg);
-    steps[k].verdict = judged(grounds[k].evidence, sigma_deg, grounds[k].travel);
+    steps[k].numbers = numbers_of(grounds[k].evidence, sigma_deg, grounds[k].travel);
   }
   return steps;
 }

@@ -12,18 +12,18 @@
 
 namespace gpo {
 
-/// GPO and its verdict for the first frames of a window.
+/// GPO for the first frames of a window.
 struct GrowthStep {
   int frames = 0;
   Eigen::Vector3d normal = -Eigen::Vector3d::UnitZ();
-  Verdict verdict;
+  Verdict numbers;     ///< not judged
   int linearized = 0;  ///< number of frames linearized in this step
 };
 
 /// Runs GPO for every length from 2 frames on, each started from the previous one: a frame's errors
 /// are linearized when it is added, and again only after the normal has changed. Empty if a frame
-/// has too few inliers or no homography; incomplete if stopped. The standard deviations of the
-/// verdicts are those of independent noise times the correlation factor of the whole window, and
+/// has too few inliers or no homography; incomplete if stopped. The standard deviations
+/// are those of independent noise times the correlation factor of the whole window, and
 /// the lens' contribution to the whole window.
 std::vector<GrowthStep> grow(const Window& window,
                              Lens lens = Lens::typical,

@@ -11,19 +11,9 @@
 
 #include <Eigen/Geometry>
 #include <Eigen/LU>
-#include <fmt/format.h>
 
 namespace gpo {
 namespace {
-
-// Simulated windows with 0.5 px of noise: 1.9 to 12 deg for pure rotations, 0.17 to 0.41 deg at low
-// parallax (4 % of d), below 0.06 deg otherwise; a room 0.1 to 0.4 deg.
-constexpr double kWeakSigma_deg = 0.5;
-constexpr double kDegenerateSigma_deg = 10;
-constexpr double kUndetermined_deg = 90;  // beyond it a standard deviation means nothing
-// Without parallax the best rotations leave only noise, at low parallax two to six times as much.
-constexpr double kDegenerateRotationToNoise = 1.3;
-constexpr double kDegenerateTranslation = 0.015;
 
 using Eigen::Matrix3d;
 using Eigen::Vector2d;
@@ -97,52 +87,24 @@ WindowEvidence evidence_of(const Window& window) {
   return evidence;
 }
 
-Verdict judged(const WindowEvidence& evidence,
-               std::optional<double> normal_sigma_deg,
-               double largest_translation) {
-  return judged(
-      evidence.noise_px(), evidence.rotation_rms_px(), normal_sigma_deg, largest_translation);
+Verdict numbers_of(const WindowEvidence& evidence,
+                   std::optional<double> normal_sigma_deg,
+                   double largest_translation) {
+  return {.normal_sigma_deg = normal_sigma_deg,
+          .rotation_rms_px = evidence.rotation_rms_px(),
+          .noise_px = evidence.noise_px(),
+          .largest_translation = largest_translation};
 }
 
-Verdict judged(double noise_px,
-               double rotation_px,
-               std::optional<double> normal_sigma_deg,
-               double largest_translation) {
-  Verdict verdict{.normal_sigma_deg = normal_sigma_deg,
-                  .rotation_rms_px = rotation_px,
-                  .noise_px = noise_px,
-                  .largest_translation = largest_translation};
-  if (rotation_px < kDegenerateRotationToNoise * noise_px) {
-    verdict.reason = fmt::format(
-        "rotations alone explain the window to {:.2f} px, the homographies to {:.2f} px",
-        rotation_px,
-        noise_px);
-  } else if (!normal_sigma_deg) {
-    verdict.reason = "the window does not determine the plane normal";
-  } else if (*normal_sigma_deg > kUndetermined_deg) {
-    verdict.reason = "the plane normal is undetermined: use a longer camera path";
-  } else if (*normal_sigma_deg > kDegenerateSigma_deg) {
-    verdict.reason = fmt::format("plane normal only known to {:.1f} deg: use a longer camera path",
-                                 *normal_sigma_deg);
-  } else if (largest_translation < kDegenerateTranslation) {
-    verdict.reason = fmt::format("the camera moved by only {:.1f} % of its distance from the plane",
-                                 100 * largest_translation);
-  } else if (largest_translation < kReadyTranslation) {
-    verdict.readiness = Readiness::weak;
-    verdict.reason = fmt::format(
-        "little parallax: normal uncertainty {:.2f} deg (1 sigma), the camera moved by {:.1f} % of "
-        "its distance from the plane",
-        *normal_sigma_deg,
-        100 * largest_translation);
-  } else if (*normal_sigma_deg > kWeakSigma_deg) {
-    verdict.readiness = Readiness::weak;
-    verdict.reason = fmt::format("plane normal only known to {:.2f} deg: use a longer camera path",
-                                 *normal_sigma_deg);
-  } else {
-    verdict.readiness = Readiness::ready;
-    verdict.reason = fmt::format("normal uncertainty {:.2f} deg (1 sigma)", *normal_sigma_deg);
-  }
-  return verdict;
+Verdict window_numbers(const Window& window, const Initialization& result, Lens lens) {
+  std::optional<double> sigma_deg;
+  if (result.uncertainty) sigma_deg = normal_sigma_deg(*result.uncertainty, lens);
+  double travel = 0;
+  for (const Pose& camera : result.cameras) travel = std::max(travel, camera.p_wc.norm());
+  Verdict numbers = numbers_of(evidence_of(window), sigma_deg, travel / result.plane.distance);
+  numbers.scene = scene_of(window);
+  numbers.criterion = scene_criterion(window, result.cameras, *numbers.noise_px);
+  return numbers;
 }
 
 SceneKind scene_of(const Window& window) {

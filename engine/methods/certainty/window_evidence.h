@@ -11,11 +11,6 @@
 
 namespace gpo {
 
-/// Least |tau| of the farthest camera in a window that is ready [plane distance]. In simulated
-/// windows it is below 0.0065 without parallax, above 0.042 at low parallax, and above 0.24 in all
-/// others.
-inline constexpr double kReadyTranslation = 0.06;
-
 /// Residuals that a verdict depends on, accumulated frame by frame.
 class WindowEvidence {
  public:
@@ -34,15 +29,13 @@ class WindowEvidence {
 
 WindowEvidence evidence_of(const Window& window);
 
-/// Classifies a window as ready, weak or degenerate (engine/method.md, "The verdict on a window").
-/// The thresholds separate all simulated windows. `noise_px`, `rotation_px`: see `WindowEvidence`.
-Verdict judged(double noise_px,
-               double rotation_px,
-               std::optional<double> normal_sigma_deg,
-               double largest_translation);
-Verdict judged(const WindowEvidence& evidence,
-               std::optional<double> normal_sigma_deg,
-               double largest_translation);
+/// Returns the numbers of a verdict that `verdict_of` judges (engine/diagnosis).
+Verdict numbers_of(const WindowEvidence& evidence,
+                   std::optional<double> normal_sigma_deg,
+                   double largest_translation);
+
+/// Returns the same for a result that is ok, with the scene; the uncertainty is the result's.
+Verdict window_numbers(const Window& window, const Initialization& result, Lens lens);
 
 /// Returns the kind of scene; unknown if inliers are not chosen by planes.
 SceneKind scene_of(const Window& window);

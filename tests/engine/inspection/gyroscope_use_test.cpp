@@ -55,11 +55,16 @@ TEST(GyroscopeUse, AGapCostsTheGyroscopeButNotTheRun) {
               HasSubstr("gap of 0.08"));
 }
 
+std::string misfit_of(const Inspection& inspection) {
+  const Finding* found = find_finding(inspection.findings, "gyroscope-misfit");
+  return found == nullptr ? "" : found->sentence;
+}
+
 TEST(GyroscopeUse, AWrongClockIsCorrectedAndNamed) {
   const auto shift = [](Gyroscope& gyroscope) { gyroscope.time_offset_ns -= 40'000'000; };
   const auto right = inspected([](Gyroscope&) {}, RotationSource::automatic);
   const auto late = inspected(shift, RotationSource::automatic);
-  EXPECT_EQ(right->gyroscope_note, "");
+  EXPECT_EQ(misfit_of(*right), "");
   EXPECT_THAT(to_text(*late),
               HasSubstr("the gyroscope does not fit the images: its clock is about +"));
   EXPECT_EQ(late->rotations_used, RotationSource::gyro_calibrated);
@@ -72,7 +77,7 @@ TEST(GyroscopeUse, WrongAxesCostTheGyroscope) {
     gyroscope.R_gyro_camera = gyroscope.R_gyro_camera * so3_exp({0, 0, M_PI / 2});
   };
   const auto found = inspected(swap, RotationSource::automatic);
-  EXPECT_THAT(found->gyroscope_note,
+  EXPECT_THAT(misfit_of(*found),
               HasSubstr("the gyroscope is not used, it does not fit the images: "));
   EXPECT_FALSE(found->inertial);
 }
@@ -85,7 +90,7 @@ TEST(GyroscopeUse, ADeadGyroscopeIsNotUsed) {
       RotationSource::automatic,
       "gpo");
   EXPECT_THAT(
-      found->gyroscope_note,
+      misfit_of(*found),
       HasSubstr("the gyroscope is not used, it does not fit the images: the images rotate"));
   EXPECT_EQ(found->initialization->verdict->readiness, Readiness::ready);
 }
@@ -96,7 +101,7 @@ TEST(GyroscopeUse, AClockThatIsOffByUpToHalfAFrameIsTheReasonOfAWeakVerdict) {
       gyroscope.time_offset_ns -= 1'000'000LL * late_ms;
     };
     const auto found = inspected(shift, RotationSource::automatic, "gpo");
-    EXPECT_EQ(found->gyroscope_note, "");
+    EXPECT_EQ(misfit_of(*found), "");
     EXPECT_THAT(found->initialization->verdict->reason,
                 HasSubstr("the clock of the gyroscope is about "))
         << late_ms;

@@ -330,7 +330,9 @@ TEST(Inspector, NamesFaultyFramesOfAWindowInTheMiddleOfALongRecording) {
   });
   Inspector inspector(std::make_shared<const Recording>(std::move(longer)));
   const auto note_at = [&](int start) {
-    return inspector.inspect({.start = start, .frames = 12})->frames_note;
+    const auto inspection = inspector.inspect({.start = start, .frames = 12});
+    const Finding* found = find_finding(inspection->findings, "faulty-frames");
+    return found == nullptr ? "" : found->sentence;
   };
   EXPECT_EQ(note_at(count), "");
   EXPECT_EQ(note_at(kBlack - 6), "faulty frames: 1 (412) are black; `--start 406` leaves them out");

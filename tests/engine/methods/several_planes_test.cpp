@@ -1,5 +1,6 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
+#include "engine/diagnosis/diagnosis.h"
 #include "engine/geometry/plane.h"
 #include "engine/methods/certainty/uncertainty.h"
 #include "engine/methods/methods.h"

@@ -226,8 +226,6 @@ ResultGroup verdict_group(const Inspection& inspection) {
     group.rows[1] = {.label = "Baseline |t|",
                      .value = number_text(*verdict.largest_translation, 3) + " d",
                      .tooltip = "Largest distance to the reference camera, in plane distances d"};
-  if (!inspection.frames_note.empty())
-    group.rows.push_back({.label = "Frames", .value = "faulty", .tooltip = inspection.frames_note});
   return group;
 }
 
@@ -305,8 +303,8 @@ void add_metric_rows(ResultGroup& group, const Inspection& inspection, double cu
 /// the cubes is in plane distances.
 ResultGroup gravity_group(const Inspection& inspection, double cube_side) {
   ResultGroup group{"GRAVITY AND METRIC SCALE", {}};
-  if (const auto& note = inspection.gyroscope_note; !note.empty())
-    group.rows.push_back(dash("Gyroscope", note));
+  if (const Finding* misfit = find_finding(inspection.findings, "gyroscope-misfit"))
+    group.rows.push_back(dash("Gyroscope", text_of(*misfit)));
   if (inspection.inertial) group.rows.push_back(up_row(*inspection.inertial));
   const bool gravity = inspection.inertial && inspection.inertial->ok;
   const bool scaled = scale_source(inspection) != ScaleSource::accelerometer;

@@ -60,6 +60,7 @@ struct SettingRows {
       case SettingKind::choice:
         return combo(setting, std::get<std::string>(value));
       case SettingKind::ids:
+      case SettingKind::keys:
       case SettingKind::point_pair:
       case SettingKind::masks:
         break;

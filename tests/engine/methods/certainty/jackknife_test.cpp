@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/methods/certainty/jackknife.h"
 
+#include "engine/diagnosis/diagnosis.h"
 #include "engine/geometry/homography.h"
 #include "engine/geometry/statistics.h"
 #include "engine/methods/certainty/solution_moves.h"

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/methods/certainty/uncertainty.h"
 
+#include "engine/diagnosis/diagnosis.h"
 #include "engine/methods/certainty/sandwich.h"
 #include "engine/methods/certainty/shared_information.h"
 #include "engine/methods/methods.h"

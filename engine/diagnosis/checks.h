@@ -1,0 +1,34 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "engine/diagnosis/evidence.h"
+#include "engine/diagnosis/finding.h"
+
+#include <vector>
+
+/// One function a check, in the order of the table `checks()`. Each returns findings without a key;
+/// empty if the evidence lacks its inputs or speaks for the answer.
+namespace gpo::check {
+
+using Findings = std::vector<Finding>;
+
+// normal_checks.cpp: the uncertainty of the plane's normal, and its causes.
+Findings rotation_only(const Evidence& evidence);
+Findings late_clock(const Evidence& evidence);
+Findings neglected_rolling_shutter(const Evidence& evidence);
+Findings little_parallax(const Evidence& evidence);
+Findings uncertain_lens(const Evidence& evidence);
+Findings uneven_surface(const Evidence& evidence);
+Findings regions_disagree(const Evidence& evidence);
+Findings uncertain_normal(const Evidence& evidence);
+
+// result_checks.cpp: the method and its numbers.
+Findings no_plane(const Evidence& evidence);
+Findings method_failed(const Evidence& evidence);
+Findings unstable_method(const Evidence& evidence);
+
+// input_checks.cpp: camera, gyroscope and what readers and stages remarked.
+Findings guessed_camera(const Evidence& evidence);
+
+}  // namespace gpo::check

@@ -1,0 +1,34 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "engine/diagnosis/checks.h"
+
+#include <fmt/format.h>
+
+namespace gpo::check {
+
+Findings no_plane(const Evidence& e) {
+  if (e.window == nullptr || e.window->inliers != Inliers::planes || !e.window->planes.empty())
+    return {};
+  const bool says_why = e.result != nullptr && !e.result->reason.empty();
+  return {
+      {.level = Level::no_plane,
+       .sentence = says_why ? e.result->reason : "no tracks agree with one homography a frame"}};
+}
+
+Findings method_failed(const Evidence& e) {
+  if (e.result == nullptr || e.result->ok) return {};
+  const bool judged = e.numbers != nullptr && e.numbers->noise_px;
+  return {{.level = judged ? Level::weak : Level::degenerate,
+           .sentence = judged ? "the method failed: " + e.result->reason : e.result->reason}};
+}
+
+Findings unstable_method(const Evidence& e) {
+  if (e.result == nullptr || !e.result->ok || !e.result->own_noise ||
+      !e.result->own_noise->unstable)
+    return {};
+  return {{.level = Level::weak,
+           .sentence = "without a tenth of the tracks the method mostly fails or finds another "
+                       "plane normal"}};
+}
+
+}  // namespace gpo::check
