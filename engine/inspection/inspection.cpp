@@ -3,7 +3,6 @@
 #include "engine/inspection/inspection.h"
 
 #include "engine/base/error.h"
-#include "engine/diagnosis/diagnosis.h"
 #include "engine/geometry/statistics.h"
 #include "engine/pipeline/method_defaults.h"
 #include "engine/pipeline/pipeline.h"
@@ -301,6 +300,13 @@ std::vector<std::string> notes_of(const Inspection& inspection) {
   for (const Finding& finding : inspection.findings)
     if (finding.level == Level::note) notes.push_back(text_of(finding));
   return notes;
+}
+
+Evidence evidence_of(const Recording& recording) {
+  return {.camera = &recording.camera,
+          .camera_is_guess = recording.camera_source == CameraSource::guess,
+          .pixel_aspect = recording.pixel_aspect,
+          .gyroscope = recording.gyroscope ? &*recording.gyroscope : nullptr};
 }
 
 void add_findings(Inspection& inspection) {

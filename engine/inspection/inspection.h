@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "engine/diagnosis/finding.h"
+#include "engine/diagnosis/diagnosis.h"
 #include "engine/evaluation/evaluation.h"
 #include "engine/inertial/inertial_alignment.h"
 #include "engine/inspection/settings/settings_table.h"
@@ -228,6 +228,9 @@ std::string board_truth_note(const Inspection& inspection);
 
 /// Returns the texts of the findings that leave the verdict.
 std::vector<std::string> notes_of(const Inspection& inspection);
+
+/// Returns the evidence that a recording gives without a window. It must outlive the result.
+Evidence evidence_of(const Recording& recording);
 
 /// Adds the findings on the ground truth, on requested points and on settings without effect.
 void add_findings(Inspection& inspection);

@@ -276,11 +276,11 @@ struct Inspector::Stages {
   }
 
   Evidence evidence(const std::vector<Remark>& remarks) const {
-    return {.camera = &recording->camera,
-            .gyroscope = recording->gyroscope ? &*recording->gyroscope : nullptr,
-            .remarks = remarks,
-            .tracks = tracks.value.get(),
-            .ids = tracks.value->ids};
+    Evidence known = evidence_of(*recording);
+    known.remarks = remarks;
+    known.tracks = tracks.value.get();
+    known.ids = tracks.value->ids;
+    return known;
   }
 
   std::vector<Remark> remarks_on_window(const Settings& settings, const Window& window) const {

@@ -60,6 +60,7 @@ struct Recording {
   std::string layout;  ///< title of the layout, for people: "EuRoC"
   Camera camera;
   CameraSource camera_source = CameraSource::file;
+  double pixel_aspect = 1;  ///< width of a pixel divided by its height, as a video states it
   std::optional<Pose> T_body_camera;        ///< body: the axes of the IMU; nullopt if unknown
   std::vector<std::int64_t> timestamps_ns;  ///< times of the frames, strictly ascending
   bool complete = true;  ///< false: the first frames of a long video, to be shown while it is read

@@ -246,6 +246,7 @@ RecordingInfo describe(const Recording& recording) {
   info.truth = describe_truth(recording);
   info.tracks = describe_tracks(recording);
   info.notes = recording.notes;
+  info.findings = findings_of(evidence_of(recording), {Of::recording});
   info.files = found_files(recording);
   return info;
 }
@@ -261,7 +262,8 @@ nlohmann::json to_json(const RecordingInfo& info) {
                          {"rate_hz", info.rate_hz},
                          {"gaps", to_json(info.gaps, "after_frame")},
                          {"camera", to_json(recording.camera)},
-                         {"notes", info.notes}};
+                         {"notes", info.notes},
+                         {"findings", to_json(info.findings)}};
   if (const auto& readout = recording.camera.readout) json["readout_ms"] = 1e3 * readout->seconds;
   json["camera"]["source"] = to_string(recording.camera_source);
   if (const auto& gyroscope = recording.gyroscope)
@@ -317,6 +319,12 @@ std::string to_text(const RecordingInfo& info) {
     table.row(i == 0 ? "files" : "", legible(to_text(info.files[i]), kLongestFile));
   for (std::size_t i = 0; i < info.notes.size(); ++i)
     table.row(i == 0 ? "notes" : "", info.notes[i]);
+  for (std::size_t i = 0; i < info.findings.size(); ++i)
+    table.row(i == 0 ? "findings" : "",
+              "{}: {} ({})",
+              to_string(info.findings[i].level),
+              text_of(info.findings[i]),
+              info.findings[i].key);
   return table.text;
 }
 

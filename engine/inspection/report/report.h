@@ -44,6 +44,7 @@ struct RecordingInfo {
   std::optional<TruthInfo> truth;
   std::optional<TracksInfo> tracks;
   std::vector<std::string> notes;
+  std::vector<Finding> findings;  ///< of the checks that need no window
   std::vector<FoundFile> files;  ///< see `found_files`
 };
 
@@ -90,6 +91,9 @@ void add_world(const Inspection& inspection, nlohmann::ordered_json& json);
 nlohmann::ordered_json value_json(const SettingValue& value);
 
 nlohmann::ordered_json pose_uncertainty_json(const PoseUncertainty& uncertainty);
+
+/// Returns a list of findings with all their fields.
+nlohmann::ordered_json to_json(std::span<const Finding> findings);
 
 /// Returns the short table that `run` prints, with units.
 std::string to_text(const Inspection& inspection);

@@ -273,20 +273,6 @@ ordered_json growth_json(const std::vector<Verdict>& growth) {
   });
 }
 
-ordered_json findings_json(std::span<const Finding> findings) {
-  return array_json(findings, [](const Finding& finding) -> ordered_json {
-    return {{"key", finding.key},
-            {"level", to_string(finding.level)},
-            {"sentence", finding.sentence},
-            {"advice", finding.advice},
-            {"command", finding.command},
-            {"tracks", finding.tracks},
-            {"frames", finding.frames},
-            {"view", finding.view},
-            {"ignored", finding.ignored}};
-  });
-}
-
 ordered_json camera_json(const Recording& recording) {
   const Camera& camera = recording.camera;
   return {{"source", to_string(recording.camera_source)},
@@ -349,6 +335,20 @@ ordered_json value_json(const SettingValue& value) {
       value);
 }
 
+ordered_json to_json(std::span<const Finding> findings) {
+  return array_json(findings, [](const Finding& finding) -> ordered_json {
+    return {{"key", finding.key},
+            {"level", to_string(finding.level)},
+            {"sentence", finding.sentence},
+            {"advice", finding.advice},
+            {"command", finding.command},
+            {"tracks", finding.tracks},
+            {"frames", finding.frames},
+            {"view", finding.view},
+            {"ignored", finding.ignored}};
+  });
+}
+
 ordered_json to_json(const Inspection& inspection) {
   const Initialization& result = *inspection.initialization;
   const Window& window = *inspection.window;
@@ -369,7 +369,7 @@ ordered_json to_json(const Inspection& inspection) {
   json["unused_settings"] = unused_json(inspection);
   if (!inspection.rotations_note.empty()) json["rotations_note"] = inspection.rotations_note;
   if (const auto notes = notes_of(inspection); !notes.empty()) json["notes"] = notes;
-  json["findings"] = findings_json(inspection.findings);
+  json["findings"] = to_json(inspection.findings);
   if (inspection.gyroscope_bias_rad_s)
     json["gyroscope_bias_rad_s"] = vector_json(*inspection.gyroscope_bias_rad_s);
   json["planes"] = planes_json(inspection);

@@ -236,6 +236,7 @@ Recording read_images(const fs::path& path, const OpenOptions& options) {
                         options.progress,
                         alone ? options.first_frames : 0);
     recording.complete = opened.complete;
+    recording.pixel_aspect = opened.pixel_aspect;
     recording.images = opened.images;
     recording.image_files = {*video};
     recording.notes.insert(recording.notes.end(), opened.notes.begin(), opened.notes.end());
