@@ -323,6 +323,10 @@ void bind_initialize(py::module_& module) {
       [](const TrackedWindow& w) { return w.shared->why_not_ready(); },
       "one sentence; empty if it is");
   add(
+      "findings",
+      [](const py::object& w) { return w.attr("json")["findings"].cast<py::list>(); },
+      "what speaks against inputs and result, as in the JSON");
+  add(
       "rotations_note",
       [](const TrackedWindow& w) { return w.shared->rotations_note; },
       "why the gyroscope is not used as given, or why another source of rotations was not used");

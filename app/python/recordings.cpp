@@ -283,6 +283,10 @@ void bind_result(py::module_& module) {
       &frames_of,
       "[(timestamp_ns, ids (n,), raw pixels (n, 2))], the input of `initialize`");
   add("metrics", &metrics_of, "None without ground truth, else as in the JSON");
+  add(
+      "findings",
+      [](const Result& result) { return json_of(result)["findings"].cast<py::list>(); },
+      "what speaks against inputs and result, as in the JSON");
   add("json", &json_of, "output of `run --json` as a dict");
   add(
       "text", [](const Result& r) { return to_text(*r.shared); }, "the table that `run` prints");

@@ -49,9 +49,11 @@ std::span<const Check> checks() {
   using namespace check;
   // clang-format off
   static const Check table[] = {
+      {"not-finite", "A number that is not finite", Of::length, false, not_finite},
       {"no-plane", "No plane among the tracks", Of::window, false, no_plane},
       {"implausible-intrinsics", "Implausible focal length or principal point", Of::recording, true, implausible_intrinsics},
       {"rotation-only", "Rotations alone explain the images", Of::length, false, rotation_only},
+      {"method-failed", "The method failed", Of::result, false, method_failed},
       {"late-clock", "The gyroscope's clock is late", Of::result, false, late_clock},
       {"rolling-shutter", "A rolling shutter that the method neglects", Of::result, false, neglected_rolling_shutter},
       {"little-parallax", "The camera hardly moved", Of::length, false, little_parallax},
@@ -59,7 +61,6 @@ std::span<const Check> checks() {
       {"uneven-surface", "The surface is uneven", Of::result, false, uneven_surface},
       {"regions-disagree", "Regions of the image disagree", Of::result, false, regions_disagree},
       {"uncertain-normal", "The plane's normal is uncertain", Of::length, false, uncertain_normal},
-      {"method-failed", "The method failed", Of::result, false, method_failed},
       {"unstable-method", "The method depends on a few tracks", Of::result, true, unstable_method},
       {"guessed-camera", "The camera is a guess", Of::recording, true, guessed_camera},
       {"gyroscope-misfit", "The gyroscope does not fit the images", Of::window, false, nullptr},

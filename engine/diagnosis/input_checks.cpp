@@ -34,9 +34,9 @@ double view_deg(const Camera& camera) {
 std::optional<double> resize_of(const Camera& camera) {
   const double by_x = 0.5 * (camera.width - 1) / camera.cx;
   const double by_y = 0.5 * (camera.height - 1) / camera.cy;
-  if (!(by_x > 0 && by_y > 0)) return std::nullopt;
   const double scale = std::sqrt(by_x * by_y);
-  if (std::abs(std::log(by_x / by_y)) > kAlike || std::abs(std::log(scale)) < kLeastResize)
+  if (!(scale > 0 && std::isfinite(scale)) || std::abs(std::log(by_x / by_y)) > kAlike ||
+      std::abs(std::log(scale)) < kLeastResize)
     return std::nullopt;
   for (const double usual : {0.25, 1. / 3, 0.375, 0.5, 0.6, 2. / 3, 0.75, 0.8, 1.25, 1.5, 2., 4.})
     if (std::abs(std::log(scale / usual)) < 0.5 * kAlike) return usual;

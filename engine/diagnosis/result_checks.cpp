@@ -2,9 +2,25 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/diagnosis/checks.h"
 
+#include <cmath>
+#include <utility>
+
 #include <fmt/format.h>
 
 namespace gpo::check {
+
+Findings not_finite(const Evidence& e) {
+  if (e.numbers == nullptr) return {};
+  for (const auto& [name, value] :
+       {std::pair("normal's uncertainty", e.numbers->normal_sigma_deg),
+        {"best rotations' residual", e.numbers->rotation_rms_px},
+        {"noise", e.numbers->noise_px},
+        {"camera's largest translation", e.numbers->largest_translation}})
+    if (value && !std::isfinite(*value))
+      return {{.level = Level::degenerate,
+               .sentence = fmt::format("the {} is not a finite number", name)}};
+  return {};
+}
 
 Findings no_plane(const Evidence& e) {
   if (e.window == nullptr || e.window->inliers != Inliers::planes || !e.window->planes.empty())

@@ -154,6 +154,7 @@ def test_window_that_is_not_ready_has_a_reason():
     assert good.is_ready and good.why_not_ready == ""
     guessed = gpo.initialize(recording.camera, frames, recording.gyroscope, camera_is_guess=True, error="transfer")
     assert guessed.why_not_ready == "the camera is a guess: calibrate it"
+    assert [one["key"] for one in guessed.findings] == ["guessed-camera"] and good.findings == []
     samples = dict(recording.gyroscope, timestamps_ns=[], rates_rad_s=np.zeros((0, 3)))
     del samples["accelerations_m_s2"]
     assert gpo.initialize(recording.camera, frames, samples).rotations_note.startswith("the gyroscope has no samples")

@@ -292,6 +292,21 @@ void add_sensors(const Initialization& result, ordered_json& json) {
   if (result.row_delay_s && u.row_delay_sigma_s) json["row_delay_sigma_s"] = *u.row_delay_sigma_s;
 }
 
+/// Adds decompositions, a refused solution and dropped tracks, if there are any.
+void add_rejected(const Inspection& inspection, ordered_json& json) {
+  const Initialization& result = *inspection.initialization;
+  const auto& ids = inspection.tracks->ids;
+  if (!result.candidates.empty())
+    json["candidates"] = array_json(result.candidates, [&](const auto& one) {
+      return candidate_json(one, inspection.window->start);
+    });
+  if (result.refused) json["refused"] = refused_json(inspection);
+  if (!result.dropped.empty())
+    json["dropped"] = array_json(result.dropped, [&](int j) -> ordered_json {
+      return {{"track", ids[j]}, {"reason", "beyond the plane's horizon"}};
+    });
+}
+
 }  // namespace
 
 Settings settings_used(const Inspection& inspection) {
@@ -396,14 +411,7 @@ ordered_json to_json(const Inspection& inspection) {
     json["verdict"] =
         verdict_json(result.verdict.value_or(Verdict{.reason = result.reason}), window);
   if (!inspection.growth.empty()) json["growth"] = growth_json(inspection.growth);
-  if (!result.candidates.empty())
-    json["candidates"] = array_json(
-        result.candidates, [&](const auto& one) { return candidate_json(one, window.start); });
-  if (result.refused) json["refused"] = refused_json(inspection);
-  if (!result.dropped.empty())
-    json["dropped"] = array_json(result.dropped, [&](int j) -> ordered_json {
-      return {{"track", ids[j]}, {"reason", "beyond the plane's horizon"}};
-    });
+  add_rejected(inspection, json);
   json["solver"] = solver_json(result.solver);
   json["timing_ms"] = timing_json(inspection.timing);
   if (inspection.truth) json["truth"] = truth_json(*inspection.truth);

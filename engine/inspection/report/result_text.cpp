@@ -80,14 +80,15 @@ std::string verdict_text(const Verdict& verdict) {
 }
 
 /// Returns the findings that lower the verdict, with their keys.
-std::string findings_text(std::span<const Finding> findings) {
+std::string findings_text(const Verdict& verdict, std::span<const Finding> findings) {
   std::string text;
   for (const Finding& finding : findings) {
     if (finding.level == Level::note) continue;
+    const std::string sentence = text_of(finding);
     text += row("finding",
                 "{}: {} ({}{}{})",
                 to_string(finding.level),
-                text_of(finding),
+                sentence == verdict.reason ? "as the verdict says" : sentence,
                 finding.key,
                 finding.command.empty() ? "" : "; script: ",
                 finding.command);
@@ -264,7 +265,8 @@ std::string to_text(const Inspection& inspection) {
                      row("status", result.ok ? "ok" : "failed: " + result.reason) +
                      row("inliers", "{} of {} {}", inliers, tracks, inliers_note(inspection));
   for (const std::string& note : notes_of(inspection)) text += row("note", note);
-  if (result.verdict) text += verdict_text(*result.verdict) + findings_text(inspection.findings);
+  if (result.verdict)
+    text += verdict_text(*result.verdict) + findings_text(*result.verdict, inspection.findings);
   if (result.ok) {
     text += row("normal",
                 "{:.5f}  (reference camera; distance = 1)",

@@ -195,6 +195,9 @@ void add_inlier_rows(std::vector<Setting>& rows) {
                       .help = "Seed of every random choice",
                       .most = 1e9,
                       .advanced = true}));
+}
+
+void add_exception_rows(std::vector<Setting>& rows) {
   rows.push_back(row([](auto& s) -> auto& { return s.exclude; },
                      {.key = "exclude",
                       .title = "Excluded",
@@ -311,6 +314,7 @@ std::span<const Setting> settings_table() {
   static const std::vector<Setting> table = [] {
     std::vector<Setting> rows = window_rows();
     add_inlier_rows(rows);
+    add_exception_rows(rows);
     add_option_rows(rows);
     rows.push_back(row([](auto& s) -> auto& { return s.options.lens; },
                        {.key = "lens",

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // LiveInitializer with samples that are late, missing, or added by other threads.
 #include "engine/initialize.h"
+#include "engine/live.h"
 #include "engine/pipeline/live_samples.h"
 #include "tests/engine/pipeline/simulated_frames.h"
 #include "tests/engine/test_folder.h"

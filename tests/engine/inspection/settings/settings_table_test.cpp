@@ -30,6 +30,8 @@ std::string other_value(const Setting& setting, const Settings& base = {}) {
                                                               : setting.choices.back().key;
     case SettingKind::ids:
       return "3,17";
+    case SettingKind::keys:
+      return "guessed-camera";
     case SettingKind::point_pair:
       return "1,2.5,3,4,17";
     case SettingKind::masks:
