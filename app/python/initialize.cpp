@@ -300,6 +300,14 @@ void bind_live(py::module_& module) {
 
 }  // namespace
 
+namespace {
+
+py::dict json_of_window(const TrackedWindow& window) {
+  return py::module_::import("gpo._recordings").attr("_json_of_tracks")(window);
+}
+
+}  // namespace
+
 TrackedWindow::TrackedWindow(const std::shared_ptr<const WindowResult>& result,
                              Camera calibrated,
                              InitializeOptions chosen)
@@ -324,7 +332,7 @@ void bind_initialize(py::module_& module) {
       "one sentence; empty if it is");
   add(
       "findings",
-      [](const py::object& w) { return w.attr("json")["findings"].cast<py::list>(); },
+      [](const TrackedWindow& w) { return json_of_window(w)["findings"].cast<py::list>(); },
       "what speaks against inputs and result, as in the JSON");
   add(
       "rotations_note",
@@ -334,12 +342,7 @@ void bind_initialize(py::module_& module) {
       "rotations",
       [](const TrackedWindow& w) { return std::string(to_string(w.shared->rotations)); },
       "source of the rotations");
-  add(
-      "json",
-      [](const TrackedWindow& w) {
-        return py::module_::import("gpo._recordings").attr("_json_of_tracks")(w).cast<py::dict>();
-      },
-      "the result as a dict like that of `run --json`");
+  add("json", &json_of_window, "the result as a dict like that of `run --json`");
   add_saving(window);
   window.def("__repr__", [](const py::object& w) {
     const bool ok = w.attr("ok").cast<bool>();

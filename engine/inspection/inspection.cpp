@@ -321,6 +321,11 @@ void add_findings(Inspection& inspection) {
   if (const auto& e = inspection.evaluation;
       e && !e->pne_deg && inspection.truth->plane && inspection.truth->cameras.front())
     add("truth-of-another-plane", "the ground truth describes another plane: no PNE and PDE");
+  for (const Setting& setting : settings_table())
+    if (setting.get(inspection.settings) != setting.get(Settings{}))
+      if (const auto why = why_idle(setting, inspection.settings, inspection.recording.get());
+          !why.empty())
+        add("unused-settings", fmt::format("{} has no effect: {}", setting.key, why));
   if (inspection.measured_scale) add("unknown-scale", inspection.measured_scale->reason);
   if (inspection.chosen_world) add("unknown-scale", inspection.chosen_world->reason);
   const Evidence evidence{.remarks = remarks,
