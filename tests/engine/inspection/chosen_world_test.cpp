@@ -137,6 +137,8 @@ TEST_F(MeasuredRoom, ErrorsNameThePointAndTheReason) {
     EXPECT_THROW(check_chosen(room_), InputError);
     EXPECT_THROW(meters_per_unit(room_), InputError);
     EXPECT_FALSE(known_scale(room_));
+    room_.findings.clear();
+    add_findings(room_);
     EXPECT_THAT(notes_of(room_), testing::Contains(room_.measured_scale->reason));
     return room_.measured_scale->reason;
   };
