@@ -13,13 +13,13 @@
 
 namespace gpo {
 
-/// What a check looks at; it is run where that is known.
+/// Subject of a check, which is run where that is known.
 enum class Of {
-  recording,  ///< what holds for all its windows; `info` runs these
+  recording,  ///< the same for all its windows; `info` runs these
   window,     ///< the window's tracks and rotations
   length,     ///< `Evidence::numbers` alone, which change as a window grows
   result,     ///< the result of a method
-  inspection  ///< what only an inspection knows: ground truth, requested points, settings
+  inspection  ///< ground truth, requested points and settings of an inspection
 };
 
 /// A row of the table of checks.

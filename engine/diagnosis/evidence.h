@@ -20,11 +20,11 @@ namespace gpo {
 
 /// A remark that a stage made before the checks.
 struct Remark {
-  std::string_view key;  ///< of the check that reports it
+  std::string_view key;  ///< key of the check that reports it
   std::string sentence;
 };
 
-/// What is known of a recording, its window and the result. Null or empty: unknown.
+/// Known facts about a recording, its window and the result. Null or empty: unknown.
 struct Evidence {
   // The recording.
   const Camera* camera = nullptr;
@@ -35,8 +35,8 @@ struct Evidence {
   // The window.
   const Window* window = nullptr;
   const Tracks* tracks = nullptr;          ///< columns as those of the window
-  std::span<const std::int64_t> ids = {};  ///< of the window's columns
-  const Verdict* numbers = nullptr;        ///< of the window or its first frames, not judged yet
+  std::span<const std::int64_t> ids = {};  ///< ids of the window's columns
+  const Verdict* numbers = nullptr;  ///< numbers of the window or its first frames, not judged yet
   // The result.
   const Method* method = nullptr;
   Lens lens = Lens::typical;

@@ -12,7 +12,7 @@
 
 namespace gpo {
 
-/// What a finding does to the verdict: a note leaves it.
+/// Effect of a finding on the verdict: a note leaves it.
 enum class Level { note, weak, degenerate, no_plane };
 
 template <>
@@ -22,8 +22,8 @@ struct ChoiceKeys<Level> : NamedKeys<"level", "note", "weak", "degenerate", "no 
 struct Finding {
   std::string key = {};  ///< that of its check; stable, for JSON, scripts and tests
   Level level = Level::note;
-  std::string sentence = {};              ///< what was seen, with numbers and units
-  std::string advice = {};                ///< what to do, one sentence; empty if nothing helps
+  std::string sentence = {};              ///< the observation, with numbers and units
+  std::string advice = {};                ///< one sentence; empty if nothing helps
   std::string command = {};               ///< a script line that does it; empty if there is none
   std::vector<std::int64_t> tracks = {};  ///< ids of the evidence to select and draw
   std::vector<int> frames = {};           ///< counted in the recording

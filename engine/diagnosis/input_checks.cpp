@@ -15,7 +15,7 @@ namespace {
 // Published calibrations of 20 cameras (EuRoC, KITTI, TUM, TUM-VI, phones, action cameras): the
 // principal point is up to 4 % of the size off the center and fx / fy up to 1.5 % off 1.
 // KITTI-360's cropped images (13 %) are beyond. Images resized to 0.75: 17 %.
-constexpr double kMostOffCenter = 0.08;  // of width or height
+constexpr double kMostOffCenter = 0.08;  // share of width or height
 constexpr double kMostAspect = 0.03;
 // A calibration for another image size moves both coordinates alike; those cameras differ by up to
 // 6 % of half the size.

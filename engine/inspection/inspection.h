@@ -102,8 +102,8 @@ struct Inspection {
   std::shared_ptr<const Recording> recording;
   Settings settings;
   RotationSource rotations_used = RotationSource::gyro;  ///< never automatic
-  std::string rotations_note;  ///< see `ChosenRotations::note`
-  std::optional<Eigen::Vector3d> gyroscope_bias_rad_s;  ///< subtracted from the rates
+  std::string rotations_note;                            ///< see `ChosenRotations::note`
+  std::optional<Eigen::Vector3d> gyroscope_bias_rad_s;   ///< subtracted from the rates
   std::shared_ptr<const Tracks> tracks;
   std::shared_ptr<const Window> window;
   /// `window` as it was when its inliers were selected, without the row delay that was compensated
@@ -111,7 +111,7 @@ struct Inspection {
   std::shared_ptr<const Window> selection = nullptr;
   std::shared_ptr<const WindowTruth> truth;  ///< null if unknown
   std::shared_ptr<const Initialization> initialization;
-  /// What speaks against inputs and result, the heaviest first; also what the ground truth shows.
+  /// Evidence against inputs and result, the heaviest first; also what the ground truth shows.
   std::vector<Finding> findings = {};
   /// Motion of the estimated cameras around each frame; empty if no row delay is known.
   std::vector<RowMotion> row_motions = {};

@@ -44,8 +44,8 @@ struct RecordingInfo {
   std::optional<TruthInfo> truth;
   std::optional<TracksInfo> tracks;
   std::vector<std::string> notes;
-  std::vector<Finding> findings;  ///< of the checks that need no window
-  std::vector<FoundFile> files;  ///< see `found_files`
+  std::vector<Finding> findings;  ///< findings of the checks that need no window
+  std::vector<FoundFile> files;   ///< see `found_files`
 };
 
 /// Returns what was found in a recording's folder, read or not and why, with paths relative to it.

@@ -100,7 +100,7 @@ TEST(ImplausibleIntrinsics, AreNamed) {
   }
 }
 
-TEST(ImplausibleIntrinsics, OfAnotherSizeNameThatSize) {
+TEST(ImplausibleIntrinsics, NameTheSizeThatTheyWereMadeFor) {
   for (const double scale : {0.5, 0.75, 0.8, 1.5, 2.0, 0.9}) {
     // A camera of 800 x 600, slightly off the center, whose images were resized.
     const Camera camera{.width = static_cast<int>(800 * scale),
