@@ -156,6 +156,10 @@ Evaluation evaluate(const Initialization& initialization,
           : determined_alignment(paths.actual, actual_plane ? actual_plane->distance : 1.0);
   if (evaluation.alignment != Alignment::point) measure_path(paths, evaluation);
   if (evaluation.plane != window.leader) return evaluation;
+  if (actual_plane) {
+    const double tracks_px = true_error_px(window, truth, window.inlier_tracks(0));
+    if (std::isfinite(tracks_px)) evaluation.tracks_px = tracks_px;
+  }
   if (actual_plane && estimated_plane) {
     const auto& [normal, distance] = *estimated_plane;
     evaluation.pne_deg = normal_angle_deg(normal, actual_plane->normal);

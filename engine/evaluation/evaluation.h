@@ -29,6 +29,8 @@ struct Evaluation {
   std::optional<double> pne_aligned_deg;
   std::optional<double> pde_m;
   std::optional<double> pne_bound_deg;
+  /// Median transfer error of the leading plane's tracks by the true homographies.
+  std::optional<double> tracks_px;
   /// PNE over the standard deviation of result and true normal; nullopt without the result's.
   std::optional<double> pne_sigmas;
   /// Scale of the alignment over the scale by the plane's distance: below 1 if the estimated path

@@ -18,6 +18,7 @@ struct TruthConvention {
   double fitted_deg = 0;   ///< the same by the convention that fits
   std::string name;        ///< completes "they fit if ..."
   std::string advice;      ///< what to change in the file, one sentence
+  bool is_used = false;    ///< the window's rotations are those of the truth
 };
 
 /// Returns "the ground truth's rotations differ by ... if ...".

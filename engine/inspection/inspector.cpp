@@ -236,7 +236,10 @@ struct Inspector::Stages {
       inspection.motion = frame_motion(window);
     }
     const std::vector<Remark> remarks = remarks_on_window(settings, window);
-    Finished end = finished(window, sources, options, evidence(remarks), numbers, std::move(found));
+    if (truth.value) inspection.truth_convention = convention_of_truth(request);
+    Evidence known = evidence(remarks);
+    if (const auto& one = inspection.truth_convention) known.truth_convention = &*one;
+    Finished end = finished(window, sources, options, known, numbers, std::move(found));
     if (!numbers.empty() && end.initialization.ok && end.initialization.row_delay_s) {
       numbers = growing_numbers(
           as_seen_at_time_stamps(window, end.initialization), options.lens, request.stop);
@@ -246,8 +249,7 @@ struct Inspector::Stages {
     inspection.metric_scale_from = metric_scale_from(window, sources, settings.options, end);
     inspection.inertial = std::move(end.inertial);
     if (window.gyro) inspection.gyroscope_bias_rad_s = window.gyro->bias_rad_s;
-    if (inspection.truth = truth.value; inspection.truth)
-      inspection.truth_convention = convention_of_truth(request);
+    inspection.truth = truth.value;
     inspection.rotations_used = rotations.value.chosen.source;
     inspection.rotations_note = rotations.value.chosen.note;
     inspection.findings = std::move(end.findings);
@@ -261,23 +263,24 @@ struct Inspector::Stages {
       inspection.imported->meters_per_unit.reset();
   }
 
-  /// The gyroscope's rotations alone are no evidence: they may be wrong themselves.
+  /// Compares the truth with rotations by images. Those of the gyroscope alone are no evidence:
+  /// they may be wrong themselves.
   std::optional<TruthConvention> convention_of_truth(const Request& request) const {
-    using enum RotationSource;
-    const RotationSource source = rotations.value.chosen.source;
-    const bool by_images = source != RotationSource::truth && source != gyro;
+    const RotationSource used = rotations.value.chosen.source;
+    const bool by_truth = used == RotationSource::truth;
     Rotations images = rotations.value.chosen.rotations;
-    if (!by_images) {
+    if (by_truth || used == RotationSource::gyro) {
       InitializeOptions options = request.settings.options;
-      options.rotations = automatic;
+      options.rotations = RotationSource::automatic;
       ChosenRotations chosen =
           window_rotations(*recording, *outliers.value, nullptr, options, request.stop).chosen;
-      if (chosen.source == gyro) return std::nullopt;
+      if (chosen.source == RotationSource::gyro) return std::nullopt;
       images = std::move(chosen.rotations);
     }
-    return truth_convention(*truth.value,
-                            images.R_wc_images.empty() ? images.R_wc : images.R_wc_images,
-                            images.sigma_rad);
+    const auto& R_wc = images.R_wc_images.empty() ? images.R_wc : images.R_wc_images;
+    auto found = truth_convention(*truth.value, R_wc, images.sigma_rad);
+    if (found) found->is_used = by_truth;
+    return found;
   }
 
   /// A result of another program may have other files for each recording, and needs its clock.
