@@ -15,7 +15,9 @@
 namespace gpo {
 namespace {
 
-constexpr double kTruthSigma_deg = 0;
+/// Least standard deviation of a true normal: files state none, and that of a board leaves out its
+/// calibration. That of a tag map is about 0.2 deg, that of a room 0.7 deg.
+constexpr double kLeastTruthSigma_deg = 0.3;
 
 /// Camera centers of the frames with a true pose, 3 x n.
 struct Paths {
@@ -165,11 +167,11 @@ Evaluation evaluate(const Initialization& initialization,
     evaluation.pne_deg = normal_angle_deg(normal, actual_plane->normal);
     if (initialization.uncertainty) {
       const auto& known = truth.uncertainties;
-      const double truth_deg =
-          !known.empty() && known.front() ? known.front()->normal_sigma_deg : kTruthSigma_deg;
+      const double known_deg =
+          known.empty() || !known.front() ? 0 : known.front()->normal_sigma_deg;
       evaluation.pne_sigmas =
-          *evaluation.pne_deg /
-          std::hypot(normal_sigma_deg(*initialization.uncertainty, lens), truth_deg);
+          *evaluation.pne_deg / std::hypot(normal_sigma_deg(*initialization.uncertainty, lens),
+                                           std::max(known_deg, kLeastTruthSigma_deg));
     }
     const double meters_per_unit = actual_plane->distance / distance;
     measure_unaligned_path(initialization, truth, meters_per_unit, evaluation);
@@ -185,6 +187,10 @@ Evaluation evaluate(const Initialization& initialization,
 }
 
 bool is_contradiction(const Evaluation& evaluation) {
+  // In 210 windows of 10 to 30 frames of five recordings the PNE was above 4 sigma three times (5.1
+  // and 5.0 sigma on boards in ten frames, and a normal 79 deg off), and the error of the path was
+  // above 13 % only in the last of these. With intrinsics of another size the PNE is 48 sigma off,
+  // and on a tiled floor, with tracks that jump, the path 75 %.
   constexpr double kMostSigmas = 4, kMostPath_percent = 30;
   return evaluation.pne_sigmas.value_or(0) > kMostSigmas ||
          evaluation.path_error_percent.value_or(0) > kMostPath_percent;

@@ -14,7 +14,7 @@ namespace {
 
 using Value = std::optional<double>;
 
-std::string ratio_text(double ratio) { return number_text(ratio, 4); }
+std::string ratio_text(double ratio) { return fmt::format("{:.4f}", ratio); }
 
 constexpr ComparedColumn kMetrics[] = {
     {.title = "PNE",
