@@ -187,7 +187,7 @@ Evaluation evaluate(const Initialization& initialization,
 }
 
 bool is_contradiction(const Evaluation& evaluation) {
-  // In 210 windows of 10 to 30 frames of five recordings the PNE was above 4 sigma three times (5.1
+  // In 150 windows of 10 to 30 frames of five recordings the PNE was above 4 sigma three times (5.1
   // and 5.0 sigma on boards in ten frames, and a normal 79 deg off), and the error of the path was
   // above 13 % only in the last of these. With intrinsics of another size the PNE is 48 sigma off,
   // and on a tiled floor, with tracks that jump, the path 75 %.

@@ -216,10 +216,16 @@ const Convention& simplest(const std::vector<Convention>& all, const RelativeRot
 std::optional<TruthConvention> truth_convention(const WindowTruth& truth,
                                                 std::span<const Matrix3d> R_wc,
                                                 double sigma_rad) {
+  // Against rotations by images in 148 windows of 10 to 30 frames of euroc-room, both chessboards
+  // and both tag recordings, the best other named convention fitted at most 2.2 times better (with
+  // wrong rotations of the images, 1.9 to 4.1 deg off); 0.3 deg off is usual. The three files of
+  // truth-conventions are 2.6 to 7.7 deg off and fit 700 times better. A constant rotation below
+  // 10 deg is no convention: two windows of euroc-room fit better by 2 and 3 deg.
   constexpr double kFitsBetter = 5;
   constexpr double kSigmas = 5;
   constexpr double kLeast_rad = 0.005;
-  constexpr double kAxes = 10;
+  constexpr double kLeastTurn_rad = 0.17;
+  constexpr double kAxes = 10;  // rotation about a second axis over the misfit
   if (R_wc.empty() || !truth.cameras.front()) return std::nullopt;
   const RelativeRotations rotations = relative_rotations(truth, R_wc);
   if (rotations.images_rad.cols() == 0) return std::nullopt;
@@ -231,8 +237,9 @@ std::optional<TruthConvention> truth_convention(const WindowTruth& truth,
   Convention fitting = simplest(conventions(), rotations);
   if (!fits(fitting)) {
     fitting = constant_rotation(rotations);
-    const double second_axis_rad = rotations.spread_rad()[1];
-    if (second_axis_rad < kAxes * rotations.misfit_rad(fitting)) return std::nullopt;
+    const bool determined = rotations.spread_rad()[1] > kAxes * rotations.misfit_rad(fitting);
+    const double turn_rad = so3_log(fitting.R_read_camera).norm();
+    if (!determined || turn_rad < kLeastTurn_rad) return std::nullopt;
   }
   if (!fits(fitting)) return std::nullopt;
   return TruthConvention{degrees(as_read_rad),

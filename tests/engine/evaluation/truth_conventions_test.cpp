@@ -104,13 +104,15 @@ TEST(TruthConventions, AreNamedWithWhatToChange) {
 }
 
 TEST(TruthConventions, FindTheConstantRotationOfABody) {
-  const Matrix3d R_body_camera = so3_exp({0.3, 0.5, -0.2});
   const Simulation s = simulate({.motion = Motion::wander, .noise_px = 0});
-  const auto body = [&](const Matrix3d& R) { return Matrix3d(R * R_body_camera.transpose()); };
-  const auto found = found_in(read_as(s, body), s);
+  const auto turned = [&](const Eigen::Vector3d& turn_rad) {
+    return read_as(s, [=](const Matrix3d& R) { return Matrix3d(R * so3_exp(-turn_rad)); });
+  };
+  const auto found = found_in(turned({0.3, 0.5, -0.2}), s);
   ASSERT_TRUE(found);
   EXPECT_EQ(found->name, "its axes are turned by 35.3 deg against the camera's");
   EXPECT_LT(found->fitted_deg, 0.1);
+  EXPECT_FALSE(found_in(turned({0.08, 0.1, -0.05}), s)) << "extrinsics that are a little off";
 }
 
 TEST(TruthConventions, AreFoundBehindTheExtrinsicsOfTheFile) {
