@@ -29,6 +29,11 @@ Findings no_plane(const Evidence& evidence);
 Findings method_failed(const Evidence& evidence);
 Findings unstable_method(const Evidence& evidence);
 
+// truth_checks.cpp: the ground truth against images and result.
+Findings truth_conventions(const Evidence& evidence);
+Findings truth_of_another_plane(const Evidence& evidence);
+Findings truth_contradicts(const Evidence& evidence);
+
 // input_checks.cpp: camera, gyroscope and what readers and stages remarked.
 Findings guessed_camera(const Evidence& evidence);
 Findings implausible_intrinsics(const Evidence& evidence);

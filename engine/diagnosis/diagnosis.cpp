@@ -52,6 +52,7 @@ std::span<const Check> checks() {
       {"not-finite", "A number that is not finite", Of::length, false, not_finite},
       {"no-plane", "No plane among the tracks", Of::window, false, no_plane},
       {"implausible-intrinsics", "Implausible focal length or principal point", Of::recording, true, implausible_intrinsics},
+      {"truth-conventions", "The ground truth fits by another convention", Of::window, false, truth_conventions},
       {"rotation-only", "Rotations alone explain the images", Of::length, false, rotation_only},
       {"method-failed", "The method failed", Of::result, false, method_failed},
       {"late-clock", "The gyroscope's clock is late", Of::result, false, late_clock},
@@ -68,7 +69,8 @@ std::span<const Check> checks() {
       {"missing-plane", "The requested plane does not exist", Of::window, false, nullptr},
       {"truth-jump", "The ground truth jumps", Of::inspection, false, nullptr},
       {"truth-of-board", "The ground truth's board and the readout time", Of::inspection, false, nullptr},
-      {"truth-of-another-plane", "The ground truth describes another plane", Of::inspection, false, nullptr},
+      {"truth-of-another-plane", "The ground truth describes another plane", Of::inspection, false, truth_of_another_plane},
+      {"truth-contradicts", "The result contradicts the ground truth", Of::inspection, false, truth_contradicts},
       {"unknown-scale", "Requested points do not give a scale or a world", Of::inspection, false, nullptr},
       {"unused-settings", "Settings that have no effect", Of::inspection, false, nullptr},
   };

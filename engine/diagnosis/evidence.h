@@ -3,6 +3,7 @@
 #pragma once
 
 #include "engine/evaluation/evaluation.h"
+#include "engine/evaluation/truth_conventions.h"
 #include "engine/geometry/camera.h"
 #include "engine/inertial/inertial_alignment.h"
 #include "engine/methods/methods.h"
@@ -45,6 +46,7 @@ struct Evidence {
   // The ground truth.
   const WindowTruth* truth = nullptr;
   const Evaluation* evaluation = nullptr;
+  const TruthConvention* truth_convention = nullptr;
 
   /// Returns the result's uncertainty; null if it has none.
   const Uncertainty* uncertainty() const {

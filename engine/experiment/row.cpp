@@ -162,6 +162,9 @@ Row make_row(const Inspection& inspection) {
     row.pne_aligned_deg = errors->pne_aligned_deg;
     row.pde_m = errors->pde_m;
     row.pne_bound_deg = errors->pne_bound_deg;
+    row.scale_ratio = errors->scale_ratio;
+    row.path_error_m = errors->path_error_m;
+    row.path_error_percent = errors->path_error_percent;
     row.scale_error_percent = errors->scale_error_percent;
     row.gravity_error_deg = errors->gravity_error_deg;
   }

@@ -22,6 +22,7 @@ struct Row {
   std::string termination;
   std::string alignment;  ///< ok | degenerate; empty without ground truth
   std::optional<double> scale, ate_m, pne_deg, pne_aligned_deg, pde_m, pne_bound_deg;
+  std::optional<double> scale_ratio, path_error_m, path_error_percent;
   std::optional<double> scale_error_percent, gravity_error_deg;  ///< with an accelerometer
   std::optional<double> track_ms, ransac_ms, rotations_ms, initialize_ms, optimize_ms, total_ms;
   std::optional<int> jobs;  ///< windows computed at once while these times were measured
@@ -76,6 +77,9 @@ void visit_row(R& row, Visitor&& visit) {
   visit("pne_aligned_deg", row.pne_aligned_deg);
   visit("pde_m", row.pde_m);
   visit("pne_bound_deg", row.pne_bound_deg);
+  visit("scale_ratio", row.scale_ratio);
+  visit("path_error_m", row.path_error_m);
+  visit("path_error_percent", row.path_error_percent);
   visit("scale_error_percent", row.scale_error_percent);
   visit("gravity_error_deg", row.gravity_error_deg);
   visit("track_ms", row.track_ms);

@@ -18,8 +18,9 @@ namespace {
 using nlohmann::ordered_json;
 
 const std::vector<std::string> kSummaryColumns = split(
-    "rms_px,ate_m,pne_deg,pne_aligned_deg,pde_m,pne_bound_deg,scale_error_percent,"
-    "gravity_error_deg,track_ms,ransac_ms,rotations_ms,initialize_ms,optimize_ms,total_ms",
+    "rms_px,ate_m,pne_deg,pne_aligned_deg,pde_m,pne_bound_deg,scale_ratio,path_error_m,"
+    "path_error_percent,scale_error_percent,gravity_error_deg,track_ms,ransac_ms,rotations_ms,"
+    "initialize_ms,optimize_ms,total_ms",
     ',');
 
 using WindowKey = std::tuple<std::string, int, int>;  // recording, start, frames

@@ -318,9 +318,6 @@ void add_findings(Inspection& inspection) {
        notes_of(truth_jumps(inspection), inspection.recording->timestamps_ns.front()))
     add("truth-jump", std::move(jump));
   add("truth-of-board", board_truth_note(inspection));
-  if (const auto& e = inspection.evaluation;
-      e && !e->pne_deg && inspection.truth->plane && inspection.truth->cameras.front())
-    add("truth-of-another-plane", "the ground truth describes another plane: no PNE and PDE");
   for (const Setting& setting : settings_table())
     if (setting.get(inspection.settings) != setting.get(Settings{}))
       if (const auto why = why_idle(setting, inspection.settings, inspection.recording.get());

@@ -4,6 +4,7 @@
 
 #include "engine/diagnosis/diagnosis.h"
 #include "engine/evaluation/evaluation.h"
+#include "engine/evaluation/truth_conventions.h"
 #include "engine/inertial/inertial_alignment.h"
 #include "engine/inspection/settings/settings_table.h"
 #include "engine/methods/methods.h"
@@ -110,6 +111,8 @@ struct Inspection {
   /// then (`at_time_stamps`); null if none was.
   std::shared_ptr<const Window> selection = nullptr;
   std::shared_ptr<const WindowTruth> truth;  ///< null if unknown
+  /// Why the truth is not used for errors; nullopt if it is.
+  std::optional<TruthConvention> truth_convention = {};
   std::shared_ptr<const Initialization> initialization;
   /// Evidence against inputs and result, the heaviest first; also what the ground truth shows.
   std::vector<Finding> findings = {};

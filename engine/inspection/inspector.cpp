@@ -236,7 +236,10 @@ struct Inspector::Stages {
       inspection.motion = frame_motion(window);
     }
     const std::vector<Remark> remarks = remarks_on_window(settings, window);
-    Finished end = finished(window, sources, options, evidence(remarks), numbers, std::move(found));
+    if (truth.value) inspection.truth_convention = convention_of_truth(request);
+    Evidence known = evidence(remarks);
+    if (const auto& one = inspection.truth_convention) known.truth_convention = &*one;
+    Finished end = finished(window, sources, options, known, numbers, std::move(found));
     if (!numbers.empty() && end.initialization.ok && end.initialization.row_delay_s) {
       numbers = growing_numbers(
           as_seen_at_time_stamps(window, end.initialization), options.lens, request.stop);
@@ -246,11 +249,11 @@ struct Inspector::Stages {
     inspection.metric_scale_from = metric_scale_from(window, sources, settings.options, end);
     inspection.inertial = std::move(end.inertial);
     if (window.gyro) inspection.gyroscope_bias_rad_s = window.gyro->bias_rad_s;
+    inspection.truth = truth.value;
     inspection.rotations_used = rotations.value.chosen.source;
     inspection.rotations_note = rotations.value.chosen.note;
     inspection.findings = std::move(end.findings);
     inspection.tracks = tracks.value;
-    inspection.truth = truth.value;
     if (window.selection_row_delay_s != 0)
       inspection.selection = std::make_shared<const Window>(at_time_stamps(window));
     inspection.window = std::make_shared<const Window>(std::move(window));
@@ -258,6 +261,26 @@ struct Inspector::Stages {
         std::make_shared<const Initialization>(std::move(end.initialization));
     if (inspection.imported && !inspection.initialization->ok)
       inspection.imported->meters_per_unit.reset();
+  }
+
+  /// Compares the truth with rotations by images. Those of the gyroscope alone are no evidence:
+  /// they may be wrong themselves.
+  std::optional<TruthConvention> convention_of_truth(const Request& request) const {
+    const RotationSource used = rotations.value.chosen.source;
+    const bool by_truth = used == RotationSource::truth;
+    Rotations images = rotations.value.chosen.rotations;
+    if (by_truth || used == RotationSource::gyro) {
+      InitializeOptions options = request.settings.options;
+      options.rotations = RotationSource::automatic;
+      ChosenRotations chosen =
+          window_rotations(*recording, *outliers.value, nullptr, options, request.stop).chosen;
+      if (chosen.source == RotationSource::gyro) return std::nullopt;
+      images = std::move(chosen.rotations);
+    }
+    const auto& R_wc = images.R_wc_images.empty() ? images.R_wc : images.R_wc_images;
+    auto found = truth_convention(*truth.value, R_wc, images.sigma_rad);
+    if (found) found->is_used = by_truth;
+    return found;
   }
 
   /// A result of another program may have other files for each recording, and needs its clock.
@@ -358,17 +381,18 @@ std::shared_ptr<const Inspection> Inspector::inspect(const Settings& settings,
     inspection.measured_scale = measure_scale(inspection);
     inspection.chosen_world = choose_world(inspection);
     inspection.other_cubes = place_other_cubes(inspection);
-    const Window& window = *inspection.window;
-    const bool main_plane_is_true =
-        !inspection.truth || plane_of_truth(window, *inspection.truth) == window.leader;
+    bool main_plane_is_true = true;
     if (inspection.truth) {
       Evaluation& e = inspection.evaluation.emplace(evaluate(*inspection.initialization,
                                                              *inspection.window,
                                                              *inspection.truth,
-                                                             settings.options.seed));
-      if (!main_plane_is_true)
-        e.pne_deg = e.pne_aligned_deg = e.pde_m = e.pne_bound_deg = std::nullopt;
-      if (inspection.inertial) compare(*inspection.inertial, *inspection.truth, e);
+                                                             settings.options.seed,
+                                                             settings.options.lens));
+      main_plane_is_true = e.plane == inspection.window->leader && !inspection.truth_convention;
+      if (inspection.truth_convention)
+        e = {.alignment = e.alignment, .plane = e.plane};
+      else if (inspection.inertial)
+        compare(*inspection.inertial, *inspection.truth, e);
       if (const auto scale = known_scale(inspection); scale && e.scale)
         e.scale_error_percent = 100 * (*scale / *e.scale - 1);
     }

@@ -130,6 +130,7 @@ std::shared_ptr<const WindowTruth> window_truth(const Recording& recording,
     const auto begin = recording.truth->poses.begin() + span.start;
     WindowTruth truth{recording.truth->source, {begin, begin + span.frames}, recording.plane};
     truth.upright = recording.truth->upright;
+    truth.R_measured_camera = recording.truth->R_measured_camera;
     if (!truth.plane) truth.plane = plane_of_board(recording, span.start, truth.cameras.front());
     return std::make_shared<const WindowTruth>(std::move(truth));
   }

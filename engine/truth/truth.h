@@ -39,6 +39,8 @@ struct GroundTruth {
   std::vector<TruthJump> jumps{};  ///< between the samples of the file, while there are frames
   int left_out = 0;                ///< rows of the file that are not finite or repeat a time
   std::optional<Readout> estimated_readout{};  ///< set if the poses of a board depend on it
+  /// Rotation of the file's extrinsics, which the poses include: x_measured = R x_camera.
+  Eigen::Matrix3d R_measured_camera = Eigen::Matrix3d::Identity();
 };
 
 /// The truth of one window, in the truth's own world.
@@ -50,6 +52,7 @@ struct WindowTruth {
       uncertainties{};                         ///< one per camera; empty if unknown
   bool upright = false;                        ///< the world's z axis points away from gravity
   std::optional<Readout> estimated_readout{};  ///< see `GroundTruth`
+  Eigen::Matrix3d R_measured_camera = Eigen::Matrix3d::Identity();  ///< see `GroundTruth`
 };
 
 }  // namespace gpo

@@ -102,5 +102,49 @@ TEST(FilesOfPeople, GiveTheSameResultAfterConversion) {
   }
 }
 
+json finding(const json& result, const std::string& key) {
+  for (const json& one : result["findings"])
+    if (one["key"] == key) return one;
+  return nullptr;
+}
+
+TEST(TruthOfPeople, IsNotUsedIfItsRotationsFitByAnotherConvention) {
+  const fs::path source = shared("cases") / "truth-conventions";
+  SKIP_WITHOUT(source);
+  for (const auto& [name, convention] :
+       {std::pair("opengl-axes", "its axes are x right, y up, z back (OpenGL)"),
+        std::pair("quaternion-w-first", "its quaternions are read w first"),
+        std::pair("world-to-camera", "its poses are inverted, from world to camera")}) {
+    const fs::path folder = fresh_folder();
+    fs::copy(source, folder, fs::copy_options::recursive);
+    fs::copy(source / name / "groundtruth.txt", folder);
+    for (const char* frames : {"10", "20"}) {
+      const json found = run_json("{} --frames {}", folder, frames);
+      const json note = finding(found, "truth-conventions");
+      ASSERT_FALSE(note.is_null()) << name;
+      EXPECT_THAT(note["sentence"].get<std::string>(), HasSubstr(convention));
+      EXPECT_EQ(note["level"], "note");
+      for (const char* metric : {"ate_m", "pne_deg", "pde_m", "path_error_m", "scale_ratio"})
+        EXPECT_TRUE(found["metrics"][metric].is_null()) << metric;
+    }
+    const Outcome by_truth = program("run {} --frames 20 --rotations truth --json -", folder);
+    EXPECT_EQ(by_truth.exit_code, 1);
+    const json refused = json::parse(by_truth.out);
+    EXPECT_EQ(finding(refused, "truth-conventions")["level"], "degenerate");
+    EXPECT_THAT(refused["verdict"]["reason"].get<std::string>(), HasSubstr(convention));
+    fs::remove(folder / "plane.yaml");
+    EXPECT_FALSE(finding(run_json("{} --frames 20", folder), "truth-conventions").is_null());
+  }
+}
+
+TEST(TruthOfPeople, ShowsErrorsThatContradictTheResult) {
+  const fs::path folder = shared("cases") / "intrinsics-of-another-size";
+  SKIP_WITHOUT(folder);
+  const json result = run_json("{} --frames 20", folder);
+  EXPECT_NEAR(result["metrics"]["pne_deg"].get<double>(), 13.8, 1);
+  EXPECT_FALSE(finding(result, "truth-contradicts").is_null());
+  EXPECT_TRUE(finding(result, "truth-conventions").is_null());
+}
+
 }  // namespace
 }  // namespace gpo::test

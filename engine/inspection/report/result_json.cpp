@@ -175,7 +175,10 @@ ordered_json metrics_json(const Evaluation& evaluation) {
                        {"pne_deg", optional_json(evaluation.pne_deg)},
                        {"pne_aligned_deg", optional_json(evaluation.pne_aligned_deg)},
                        {"pde_m", optional_json(evaluation.pde_m)},
-                       {"pne_bound_deg", optional_json(evaluation.pne_bound_deg)}};
+                       {"pne_bound_deg", optional_json(evaluation.pne_bound_deg)},
+                       {"scale_ratio", optional_json(evaluation.scale_ratio)},
+                       {"path_error_m", optional_json(evaluation.path_error_m)},
+                       {"path_error_percent", optional_json(evaluation.path_error_percent)}};
   if (evaluation.scale_error_percent) json["scale_error_percent"] = *evaluation.scale_error_percent;
   if (evaluation.gravity_error_deg) json["gravity_error_deg"] = *evaluation.gravity_error_deg;
   return json;

@@ -196,6 +196,11 @@ std::string metrics_text(const Evaluation& e) {
              with_unit(e.pne_bound_deg, 1, 3, "deg"),
              with_unit(e.pne_aligned_deg, 1, 3, "deg")) +
          row("PDE", with_unit(e.pde_m, 1e3, 2, "mm")) +
+         row("path error",
+             "{}  ({} of the path, without alignment; scale ratio {})",
+             with_unit(e.path_error_m, 1e3, 2, "mm"),
+             with_unit(e.path_error_percent, 1, 2, "%"),
+             e.scale_ratio ? fmt::format("{:.4f}", *e.scale_ratio) : "-") +
          (e.scale_error_percent ? row("scale error", with_unit(e.scale_error_percent, 1, 2, "%"))
                                 : "") +
          (e.gravity_error_deg ? row("up error", with_unit(e.gravity_error_deg, 1, 2, "deg")) : "");

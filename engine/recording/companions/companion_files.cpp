@@ -212,6 +212,7 @@ GroundTruth camera_truth(const PosePath& path,
                      : fmt::format("{}{}{}", source, kOriginally, mounting.source);
   truth.upright = mounting.upright.value_or(false);
   truth.left_out = path.left_out;
+  truth.R_measured_camera = mounting.T_measured_camera.R_wc;
   for (const std::int64_t time : frame_times_ns) {
     const auto measured = pose_at(path, time + mounting.time_offset_ns);
     truth.poses.push_back(measured ? std::optional(*measured * mounting.T_measured_camera)

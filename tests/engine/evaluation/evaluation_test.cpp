@@ -79,6 +79,51 @@ TEST(Evaluation, MeasuresNormalErrorAndRootMeanSquareAte) {
   EXPECT_NEAR(*moved.ate_m, kMetersPerUnit * 0.01 * std::sqrt(3), 0.004);
 }
 
+TEST(Evaluation, ShowsAWrongLengthOfThePathThatTheAlignmentHides) {
+  const Simulation s = without_noise();
+  const Evaluation right = evaluated(s, exact(s));
+  EXPECT_NEAR(*right.scale_ratio, 1, 1e-9);
+  EXPECT_NEAR(*right.path_error_m, 0, 1e-9);
+  EXPECT_NEAR(*right.path_error_percent, 0, 1e-9);
+  EXPECT_FALSE(is_contradiction(right));
+  Initialization twice = exact(s);
+  for (Pose& camera : twice.cameras) camera.p_wc *= 2;
+  const Evaluation e = evaluated(s, twice);
+  EXPECT_NEAR(*e.ate_m, 0, 1e-9);
+  EXPECT_NEAR(*e.scale_ratio, 0.5, 1e-9);
+  double squares = 0, length = 0;
+  for (std::size_t i = 1; i < s.cameras.size(); ++i) {
+    squares += s.cameras[i].p_wc.squaredNorm();
+    length += (s.cameras[i].p_wc - s.cameras[i - 1].p_wc).norm();
+  }
+  const double rms = std::sqrt(squares / static_cast<double>(s.cameras.size()));
+  EXPECT_NEAR(*e.path_error_m, kMetersPerUnit * rms, 1e-9);
+  EXPECT_NEAR(*e.path_error_percent, 100 * rms / length, 1e-6);
+  Initialization other_unit = exact(s);  // as imported results have
+  for (Pose& camera : other_unit.cameras) camera.p_wc *= 3;
+  for (MapPoint& point : other_unit.points) point.position *= 3;
+  other_unit.plane.distance *= 3;
+  EXPECT_NEAR(*evaluated(s, other_unit).scale_ratio, 1, 1e-9);
+  EXPECT_NEAR(*evaluated(s, other_unit).path_error_m, 0, 1e-9);
+}
+
+TEST(Evaluation, IsAContradictionBeyondTheUncertaintyOfResultAndTruth) {
+  const Simulation s = without_noise();
+  Initialization tilted = exact(s);
+  const Eigen::Matrix3d R = so3_exp(radians(4.0) * s.plane.normal.unitOrthogonal());
+  for (MapPoint& point : tilted.points) point.position = R * point.position;
+  EXPECT_FALSE(evaluated(s, tilted).pne_sigmas) << "the result has no uncertainty";
+  tilted.uncertainty.emplace().normal_sigma_deg = 0.3;
+  WindowTruth truth = true_window(s);
+  truth.uncertainties.resize(truth.cameras.size());
+  truth.uncertainties.front() = PoseUncertainty{.normal_sigma_deg = 0.4};
+  const Evaluation e = evaluate(tilted, s.window, truth, 1);
+  EXPECT_NEAR(*e.pne_sigmas, 8, 1e-6);
+  EXPECT_TRUE(is_contradiction(e));
+  truth.uncertainties.front()->normal_sigma_deg = 2;
+  EXPECT_FALSE(is_contradiction(evaluate(tilted, s.window, truth, 1)));
+}
+
 TEST(Evaluation, StraightPathsHaveNoAlignedNormalAndStationaryCamerasNoScale) {
   const Simulation s = without_noise(Motion::sideways);
   const Evaluation e = evaluated(s, exact(s));
@@ -90,8 +135,9 @@ TEST(Evaluation, StraightPathsHaveNoAlignedNormalAndStationaryCamerasNoScale) {
   const Evaluation stationary = evaluated(still, exact(still));
   EXPECT_EQ(stationary.alignment, Alignment::point);
   EXPECT_FALSE(stationary.scale || stationary.ate_m || stationary.pde_m ||
-               stationary.pne_aligned_deg);
-  EXPECT_TRUE(stationary.pne_deg);
+               stationary.pne_aligned_deg || stationary.scale_ratio ||
+               stationary.path_error_percent);
+  EXPECT_TRUE(stationary.pne_deg && stationary.path_error_m);
 }
 
 TEST(Evaluation, IgnoresFramesWithoutTruth) {
@@ -139,17 +185,39 @@ Window with_moved_plane(const Simulation& s, double moved_px) {
   return window;
 }
 
-TEST(PlaneOfTruth, IsTheOneWhoseTracksAgreeWithIt) {
+TEST(PlaneOfTruth, IsTheLeadingOneUnlessTheTracksOfAnotherAgreeBetter) {
   const Simulation s = simulate({.motion = Motion::wander, .noise_px = 0.5});
   EXPECT_EQ(plane_of_truth(s.window, true_window(s)), 0);
   EXPECT_EQ(plane_of_truth(with_moved_plane(s, 0), true_window(s)), 0);
-  EXPECT_EQ(plane_of_truth(with_moved_plane(s, 20), true_window(s)), 1);
+  Window moved = with_moved_plane(s, 20);
+  EXPECT_EQ(plane_of_truth(moved, true_window(s)), 1);
+  EXPECT_FALSE(evaluate(exact(s), moved, true_window(s), 1).pne_deg);
+  moved.leader = 1;
+  EXPECT_EQ(plane_of_truth(moved, true_window(s)), 1);
+  EXPECT_TRUE(evaluate(exact(s), moved, true_window(s), 1).pne_deg);
+}
+
+TEST(PlaneOfTruth, IsTheLeadingOneIfTheTracksContradictIt) {
+  const Simulation s = simulate({.motion = Motion::wander, .noise_px = 0.5});
   Window alone = with_moved_plane(s, 20);
   alone.planes.pop_back();
-  EXPECT_EQ(plane_of_truth(alone, true_window(s)), std::nullopt);
-  WindowTruth none = true_window(s);
-  none.plane.reset();
-  EXPECT_EQ(plane_of_truth(alone, none), 0);
+  EXPECT_EQ(plane_of_truth(alone, true_window(s)), 0);
+  Window both = with_moved_plane(s, 100);
+  for (int i = 1; i < both.frame_count(); ++i)
+    for (const int j : both.planes[1].tracks) both.points_px[i](0, j) += 20;
+  EXPECT_EQ(plane_of_truth(both, true_window(s)), 0) << "the other is nearer, but does not agree";
+}
+
+TEST(PlaneOfTruth, IsNoneIfTheTruthHasNoPlaneInView) {
+  const Simulation s = simulate({.motion = Motion::wander, .noise_px = 0.5});
+  WindowTruth truth = true_window(s);
+  const Eigen::Vector3d& at = truth.cameras.front()->p_wc;
+  const double height = truth.plane->normal.dot(at) + truth.plane->distance;
+  truth.plane->distance -= 2 * height;  // the mirror image, behind the camera
+  EXPECT_EQ(plane_of_truth(s.window, truth), std::nullopt);
+  EXPECT_FALSE(evaluate(exact(s), s.window, truth, 1).pne_deg);
+  truth.plane.reset();
+  EXPECT_EQ(plane_of_truth(s.window, truth), 0);
 }
 
 }  // namespace

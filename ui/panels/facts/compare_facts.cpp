@@ -14,6 +14,8 @@ namespace {
 
 using Value = std::optional<double>;
 
+std::string ratio_text(double ratio) { return fmt::format("{:.4f}", ratio); }
+
 constexpr ComparedColumn kMetrics[] = {
     {.title = "PNE",
      .meaning = "Plane normal error: angle to the true normal, in the reference camera",
@@ -35,7 +37,21 @@ constexpr ComparedColumn kMetrics[] = {
          "Absolute trajectory error: RMS distance of the aligned camera centers to the true ones",
      .unit = "m",
      .text = length_text,
-     .evaluated = &Evaluation::ate_m}};
+     .evaluated = &Evaluation::ate_m},
+    {.title = "Path error",
+     .meaning =
+         "RMS distance of the camera centers to the true ones without alignment, in the axes "
+         "of the reference camera and the scale by the plane's distance",
+     .unit = "m",
+     .text = length_text,
+     .evaluated = &Evaluation::path_error_m},
+    {.title = "Scale ratio",
+     .meaning = "Scale of the alignment over that by the plane's distance: 1 if the length of the "
+                "path is right beside the plane. The alignment hides this error from the ATE",
+     .unit = "",
+     .text = ratio_text,
+     .evaluated = &Evaluation::scale_ratio,
+     .less_is_better = false}};
 
 std::string count_text(double value) { return fmt::format("{:.0f}", value); }
 std::string px_text(double value) { return number_text(value, 3) + " px"; }

@@ -29,12 +29,16 @@ constexpr Stage kStages[] = {
 
 std::string why_no_metric(const Inspection& inspection, bool needs_alignment) {
   const auto& evaluation = inspection.evaluation;
-  if (needs_alignment && evaluation && evaluation->alignment == Alignment::point)
-    return "Unknown: the true camera path is a point and does not determine the scale";
-  if (needs_alignment && evaluation && evaluation->alignment == Alignment::line)
-    return "Unknown: the true camera path is a line and does not determine the rotation about it";
   if (!inspection.truth) return "Unknown: the recording has no ground truth";
-  if (!inspection.initialization->ok) return "Unknown: the initialization failed";
+  if (!evaluation) return "Unknown: the initialization failed";
+  if (const auto& convention = inspection.truth_convention)
+    return "Unknown: " + sentence_of(*convention);
+  if (evaluation->plane != inspection.window->leader)
+    return "Unknown: the ground truth describes another plane";
+  if (needs_alignment && evaluation->alignment == Alignment::point)
+    return "Unknown: the true camera path is a point and does not determine the scale";
+  if (needs_alignment && evaluation->alignment == Alignment::line)
+    return "Unknown: the true camera path is a line and does not determine the rotation about it";
   return "Unknown: the ground truth does not cover the reference frame or the plane";
 }
 
@@ -59,11 +63,16 @@ std::optional<ResultRow> truth_row(const Inspection& inspection) {
 ResultGroup metrics_group(const Inspection& inspection) {
   const Evaluation e = inspection.evaluation.value_or(Evaluation{});
   ResultGroup group{"ERROR AGAINST GROUND TRUTH", {}};
+  const Role color = is_contradiction(e) ? Role::bad : Role::text;
   for (const ComparedColumn& metric : metrics()) {
     const auto& value = e.*metric.evaluated;
-    const bool needs_alignment = metric.evaluated != &Evaluation::pne_deg;
-    group.rows.push_back(value ? ResultRow{metric.title, metric.text(*value), "", metric.meaning}
-                               : dash(metric.title, why_no_metric(inspection, needs_alignment)));
+    const bool needs_alignment =
+        metric.evaluated != &Evaluation::pne_deg && metric.evaluated != &Evaluation::path_error_m;
+    group.rows.push_back(
+        value ? ResultRow{metric.title, metric.text(*value), "", metric.meaning, color}
+              : dash(metric.title, why_no_metric(inspection, needs_alignment)));
+    if (metric.evaluated == &Evaluation::path_error_m && e.path_error_percent)
+      group.rows.back().note = number_text(*e.path_error_percent, 1) + " % of the path";
   }
   if (e.pne_deg && e.pne_bound_deg) {
     group.rows[0].note = "bound " + angle_text(*e.pne_bound_deg);

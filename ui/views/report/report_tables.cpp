@@ -172,6 +172,7 @@ void add_errors(Numbers& numbers, const Inspection& inspection) {
     normal = text_of_sigma(truth->normal_sigma_deg);
   }
   const std::string about = "uncertainty of the ground truth, " + inspection.truth->source;
+  const std::size_t first = numbers.rows.size();
   if (e->ate_m) numbers.add("ATE", fmt::format("{:.2f} mm", 1e3 * *e->ate_m), position, about);
   if (e->pne_deg)
     numbers.add("error of the normal (PNE)",
@@ -181,10 +182,23 @@ void add_errors(Numbers& numbers, const Inspection& inspection) {
   if (e->pde_m)
     numbers.add(
         "error of the plane's distance (PDE)", fmt::format("{:.2f} mm", 1e3 * *e->pde_m), position);
+  if (e->path_error_m)
+    numbers.add(
+        "error of the path without alignment",
+        fmt::format("{:.2f} mm", 1e3 * *e->path_error_m),
+        position,
+        e->path_error_percent ? fmt::format("{:.2f} % of the path", *e->path_error_percent) : "");
+  if (e->scale_ratio)
+    numbers.add("scale ratio",
+                fmt::format("{:.4f}", *e->scale_ratio),
+                "unknown",
+                "scale of the alignment over that by the plane's distance");
   if (e->scale_error_percent)
     numbers.add("error of the scale", fmt::format("{:.2f} %", *e->scale_error_percent), "unknown");
   if (e->gravity_error_deg)
     numbers.add("error of up", fmt::format("{:.2f} deg", *e->gravity_error_deg), "unknown");
+  if (is_contradiction(*e))
+    for (std::size_t i = first; i < numbers.rows.size(); ++i) numbers.rows[i][1].style = "failed";
 }
 
 /// Returns the cells of a result with the titles of their columns.
@@ -199,6 +213,12 @@ std::vector<std::pair<const char*, HtmlCell>> comparison_cells(const Inspection&
   const auto decimals = [&](const std::optional<double>& value, double factor, int digits) {
     return number(value ? fmt::format("{:.{}f}", factor * *value, digits) : "");
   };
+  const bool contradicts = inspection.evaluation && is_contradiction(*inspection.evaluation);
+  const auto error = [&](const std::optional<double>& value, double factor, int digits) {
+    HtmlCell cell = decimals(value, factor, digits);
+    if (contradicts) cell.style += " failed";
+    return cell;
+  };
   return {
       {"recording", {inspection.recording->name}},
       {"method", {title_of(configuration_of(inspection.settings))}},
@@ -209,8 +229,10 @@ std::vector<std::pair<const char*, HtmlCell>> comparison_cells(const Inspection&
       {"inliers", number(fmt::format("{}/{}", row.inliers.value_or(0), row.tracks.value_or(0)))},
       {"reprojection [px]", decimals(result.reprojection_rms_px, 1, 3)},
       {"ATE [mm]", decimals(row.ate_m, 1e3, 2)},
-      {"PNE [deg]", decimals(row.pne_deg, 1, 3)},
-      {"PDE [mm]", decimals(row.pde_m, 1e3, 2)},
+      {"PNE [deg]", error(row.pne_deg, 1, 3)},
+      {"PDE [mm]", error(row.pde_m, 1e3, 2)},
+      {"path error [%]", error(row.path_error_percent, 1, 2)},
+      {"scale ratio", error(row.scale_ratio, 1, 4)},
       {"scale error [%]", decimals(row.scale_error_percent, 1, 2)},
       {"time [ms]", decimals(row.total_ms, 1, 0)},
       {"reason of the failure", {result.ok ? "" : result.reason}}};

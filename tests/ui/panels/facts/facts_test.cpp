@@ -194,6 +194,29 @@ TEST(Results, ExplainADegenerateAlignment) {
   expect_dashes(rows_of(&inspection), {"PNE aligned"}, "path is a line");
 }
 
+TEST(Results, ShowErrorsThatContradictTheTruthInRed) {
+  Inspection inspection = inspected();
+  inspection.evaluation->path_error_m = 0.0123;
+  inspection.evaluation->path_error_percent = 4.56;
+  inspection.evaluation->scale_ratio = 0.987;
+  const Rows fitting = rows_of(&inspection);
+  expect_values(fitting, {{"Path error", "12.3 mm"}, {"Scale ratio", "0.9870"}});
+  EXPECT_EQ(fitting.at("Path error").note, "4.6 % of the path");
+  EXPECT_TRUE(fitting.at("PNE").color == Role::text);
+  inspection.evaluation->pne_sigmas = 48;
+  const Rows off = rows_of(&inspection);
+  for (const char* label : {"PNE", "PDE", "Path error", "Scale ratio"})
+    EXPECT_TRUE(off.at(label).color == Role::bad) << label;
+}
+
+TEST(Results, SayWhyATruthIsNotUsed) {
+  Inspection inspection = inspected();
+  inspection.evaluation = Evaluation{.plane = 1};
+  expect_dashes(rows_of(&inspection), {"PNE", "PDE", "Path error"}, "describes another plane");
+  inspection.truth_convention = TruthConvention{.name = "its quaternions are read w first"};
+  expect_dashes(rows_of(&inspection), {"PNE", "ATE", "Scale ratio"}, "are read w first");
+}
+
 TEST(Results, ShowTheReasonOfAFailure) {
   Inspection inspection = inspected();
   inspection.evaluation.reset();
