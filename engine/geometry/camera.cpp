@@ -197,14 +197,10 @@ double pixel_unit(const Camera& camera) {
 }
 
 double pixel_unit(const Eigen::Matrix3d& K) {
-  return unit_of_diagonal(likely_image_size_px(K).norm());
-}
-
-Vector2d likely_image_size_px(const Eigen::Matrix3d& K) {
-  constexpr double kUsualHeight = 0.75;  // of the width, which is about the focal length
-  const Vector2d center = K.topRightCorner<2, 1>();
-  if (center.minCoeff() > 0) return 2 * center + Vector2d::Ones();
-  return K(0, 0) * Vector2d(1, kUsualHeight);
+  constexpr double kUsualDiagonal = 1.25;  // of a 4:3 image that is as wide as its focal length
+  const bool is_inside = K(0, 2) > 0 && K(1, 2) > 0;
+  return unit_of_diagonal(is_inside ? std::hypot(2 * K(0, 2) + 1, 2 * K(1, 2) + 1)
+                                    : kUsualDiagonal * K(0, 0));
 }
 
 Vector2d project(const Camera& camera, const Eigen::Vector3d& point_c) {

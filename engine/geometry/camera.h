@@ -110,14 +110,10 @@ void check_camera(const Camera& camera);
 Eigen::Matrix3d intrinsic_matrix(const Camera& camera);
 
 /// Returns the unit of thresholds on pixels, by the image's diagonal (engine/method.md, "Scale of
-/// pixels"): 1 from 512x512 to 1280x960, proportional below and above. Without a size it is
-/// `likely_image_size_px`.
+/// pixels"): 1 from 512x512 to 1280x960, proportional below and above. A principal point stands for
+/// half the image.
 double pixel_unit(const Camera& camera);
 double pixel_unit(const Eigen::Matrix3d& K);
-
-/// Returns the size of an image with the principal point in its middle [px], or of a usual lens
-/// with this focal length if a coordinate of the principal point is not above zero.
-Eigen::Vector2d likely_image_size_px(const Eigen::Matrix3d& K);
 
 /// Returns the raw pixel of a point in the camera frame (z > 0); NaN beyond the valid radius.
 Eigen::Vector2d project(const Camera& camera, const Eigen::Vector3d& point_c);

@@ -110,8 +110,10 @@ double homography_error_px(const Window& window) {
 }
 
 Eigen::Vector2d image_size_px(const Window& window) {
-  if (window.width == 0 || window.height == 0) return likely_image_size_px(window.K);
-  return Eigen::Vector2d(window.width, window.height);
+  if (window.width > 0 && window.height > 0) return Eigen::Vector2d(window.width, window.height);
+  const Eigen::Vector2d center = window.K.topRightCorner<2, 1>();
+  if (center.minCoeff() > 0) return 2 * center + Eigen::Vector2d::Ones();
+  return window.K(0, 0) * Eigen::Vector2d(1, 0.75);
 }
 
 double pixel_unit(const Window& window) {

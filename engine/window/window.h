@@ -144,7 +144,8 @@ struct Window {
   std::optional<int> plane_of(int track) const;
 };
 
-/// Returns the size of the recorded image [px], `likely_image_size_px` if unknown.
+/// Returns the size of the recorded image [px]; if unknown, that of an image with the principal
+/// point in its middle, or of a usual lens if a coordinate of that is not above zero.
 Eigen::Vector2d image_size_px(const Window& window);
 /// Returns the `pixel_unit` of the recorded image.
 double pixel_unit(const Window& window);
