@@ -17,6 +17,10 @@ namespace {
 using Eigen::Matrix2Xd;
 using Eigen::Vector2d;
 
+// In 147 healthy windows of nine real recordings, each of 5, 10 and 20 frames, no track passed; in
+// windows of 2 frames, which do not measure their noise, tracks of four did. In rendered overlays
+// of 6 to 80 % of the tracks nine tenths of them or more pass from 3 frames on.
+constexpr int kLeastFrames = 3;            // that see a static track
 constexpr double kLeastNoise = 0.1;        // of one coordinate [pixel_unit]
 constexpr double kMostTimesOthers = 3;     // noise of one track over that of all
 constexpr double kVarianceOfThird = 20;    // 1 + 9 + 9 + 1: variance for a variance of 1
@@ -109,7 +113,8 @@ std::vector<int> static_tracks(const std::vector<Matrix2Xd>& points_px,
     PathSpread motion;
     for (const Matrix2Xd& frame_px : points_px)
       if (frame_px.col(j).allFinite()) motion.add(frame_px.col(j));
-    if (motion.count() > 1 && motion.rms_px() <= kStaticSigmas * noise[j]) resting.push_back(j);
+    if (motion.count() >= kLeastFrames && motion.rms_px() <= kStaticSigmas * noise[j])
+      resting.push_back(j);
     if (motion.rms_px() >= kMovingSigmas * noise[j]) moving.push_back(j);
   }
   if (resting.size() < kLeastStatic || std::ssize(moving) < kLeastMoving) return {};
