@@ -3,7 +3,6 @@
 #include "engine/diagnosis/checks.h"
 #include "engine/diagnosis/moving_objects.h"
 #include "engine/geometry/statistics.h"
-#include "engine/methods/certainty/focal_rate.h"
 
 #include <algorithm>
 #include <array>

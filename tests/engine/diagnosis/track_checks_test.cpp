@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/diagnosis/diagnosis.h"
 #include "engine/diagnosis/moving_objects.h"
-#include "engine/methods/certainty/focal_rate.h"
 #include "tests/engine/simulated_window.h"
 
 #include <algorithm>
@@ -148,30 +147,6 @@ TEST(MovingObjects, AreNotPointsOffThePlane) {
     options.off_plane = 0.4;
     const Simulation simulation = simulate(options);
     EXPECT_EQ(moving_objects(simulation.window, true_result(simulation)), std::vector<int>{});
-  }
-}
-
-/// Scales the points around the principal point as a changing focal length does.
-void zoom(Window& window, double rate_s) {
-  const Vector2d center = window.K.topRightCorner<2, 1>();
-  for (int i = 0; i < window.frame_count(); ++i) {
-    const double seconds =
-        1e-9 * static_cast<double>(window.timestamps_ns[i] - window.timestamps_ns[0]);
-    window.points_px[i] =
-        ((1 + rate_s * seconds) * (window.points_px[i].colwise() - center)).colwise() + center;
-  }
-}
-
-TEST(FocalRate, MeasuresASmallRateWithinItsUncertainty) {
-  for (int seed = 1; seed <= 10; ++seed) {
-    for (const double rate_s : {-0.002, 0.0, 0.002}) {
-      Simulation simulation = simulate(noisy(Motion::orbit, seed, 0.2));
-      zoom(simulation.window, rate_s);
-      const auto found = focal_rate(simulation.window, true_result(simulation));
-      ASSERT_TRUE(found);
-      EXPECT_LT(found->sigma_s, 0.01);
-      EXPECT_LT(std::abs(found->rate_s - rate_s), 4 * found->sigma_s) << rate_s;
-    }
   }
 }
 
