@@ -34,6 +34,10 @@ Findings truth_conventions(const Evidence& evidence);
 Findings truth_of_another_plane(const Evidence& evidence);
 Findings truth_contradicts(const Evidence& evidence);
 
+// track_checks.cpp: what the tracks do in the image.
+Findings static_tracks(const Evidence& evidence);
+Findings moving_objects(const Evidence& evidence);
+
 // input_checks.cpp: camera, gyroscope and what readers and stages remarked.
 Findings guessed_camera(const Evidence& evidence);
 Findings implausible_intrinsics(const Evidence& evidence);

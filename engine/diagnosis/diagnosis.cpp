@@ -4,12 +4,14 @@
 
 #include "engine/base/error.h"
 #include "engine/diagnosis/checks.h"
+#include "engine/diagnosis/not_finite.h"
 #include "engine/methods/certainty/uncertainty.h"
 #include "engine/methods/certainty/window_evidence.h"
 #include "engine/methods/common/window_checks.h"
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <functional>
 #include <utility>
 
@@ -53,6 +55,7 @@ std::span<const Check> checks() {
       {"no-plane", "No plane among the tracks", Of::window, false, no_plane},
       {"implausible-intrinsics", "Implausible focal length or principal point", Of::recording, true, implausible_intrinsics},
       {"truth-conventions", "The ground truth fits by another convention", Of::window, false, truth_conventions},
+      {"static-tracks", "Tracks that do not move while others do", Of::window, true, static_tracks},
       {"rotation-only", "Rotations alone explain the images", Of::length, false, rotation_only},
       {"method-failed", "The method failed", Of::result, false, method_failed},
       {"late-clock", "The gyroscope's clock is late", Of::result, false, late_clock},
@@ -64,6 +67,7 @@ std::span<const Check> checks() {
       {"uncertain-normal", "The plane's normal is uncertain", Of::length, false, uncertain_normal},
       {"unstable-method", "The method depends on a few tracks", Of::result, true, unstable_method},
       {"guessed-camera", "The camera is a guess", Of::recording, true, guessed_camera},
+      {"moving-objects", "Objects move in the scene", Of::result, true, moving_objects},
       {"gyroscope-misfit", "The gyroscope does not fit the images", Of::window, false, nullptr},
       {"faulty-frames", "Frames repeat, or do not show the scene", Of::window, false, nullptr},
       {"missing-plane", "The requested plane does not exist", Of::window, false, nullptr},
@@ -99,6 +103,9 @@ std::vector<Finding> findings_of(const Evidence& evidence,
   std::vector<Finding> all;
   for (const Check& check : checks()) {
     if (std::ranges::find(of, check.of) == of.end()) continue;
+    // The other checks would compare and print the same numbers.
+    const bool finite = find_finding(all, "not-finite") == nullptr;
+    if (!finite && (check.of == Of::length || check.of == Of::result)) continue;
     for (Finding& finding :
          check.look != nullptr ? check.look(evidence) : remarked(evidence, check.key)) {
       finding.key = check.key;
@@ -121,6 +128,11 @@ Verdict verdict_of(std::span<const Finding> findings, const Evidence& evidence) 
   constexpr std::array kReadiness{
       Readiness::ready, Readiness::weak, Readiness::degenerate, Readiness::no_plane};
   verdict.readiness = kReadiness[static_cast<std::size_t>(heaviest(findings))];
+  for (auto* number : {&verdict.normal_sigma_deg,
+                       &verdict.rotation_rms_px,
+                       &verdict.noise_px,
+                       &verdict.largest_translation})
+    if (*number && !std::isfinite(**number)) number->reset();
   const auto heavy = std::ranges::max_element(findings, {}, &Finding::level);
   verdict.reason = verdict.readiness == Readiness::ready ? why_ready(evidence) : text_of(*heavy);
   if (verdict.readiness == Readiness::no_plane) verdict.scene = SceneKind::no_plane;
@@ -171,7 +183,10 @@ Initialization judged(Verdict verdict, Initialization result) {
   result.verdict = std::move(verdict);
   if (!fails) return result;
   const std::string reason = result.verdict->reason;
-  return refused(reason, std::move(result));
+  const bool finite = first_not_finite(result).empty();
+  Initialization failure = refused(reason, std::move(result));
+  if (!finite) failure.refused.reset();
+  return failure;
 }
 
 }  // namespace gpo

@@ -1,25 +1,27 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/diagnosis/checks.h"
+#include "engine/diagnosis/not_finite.h"
 
-#include <cmath>
-#include <utility>
+#include <string>
 
 #include <fmt/format.h>
 
 namespace gpo::check {
 
 Findings not_finite(const Evidence& e) {
-  if (e.numbers == nullptr) return {};
-  for (const auto& [name, value] :
-       {std::pair("normal's uncertainty", e.numbers->normal_sigma_deg),
-        {"best rotations' residual", e.numbers->rotation_rms_px},
-        {"noise", e.numbers->noise_px},
-        {"camera's largest translation", e.numbers->largest_translation}})
-    if (value && !std::isfinite(*value))
-      return {{.level = Level::degenerate,
-               .sentence = fmt::format("the {} is not a finite number", name)}};
-  return {};
+  std::string name;
+  const auto look = [&](const auto* value) {
+    if (value != nullptr && name.empty()) name = first_not_finite(*value);
+  };
+  look(e.numbers);
+  if (e.result != nullptr && e.result->ok) look(e.result);
+  look(e.inertial);
+  look(e.evaluation);
+  if (name.empty()) return {};
+  return {{.level = Level::degenerate,
+           .sentence = fmt::format("{} is not a finite number", name),
+           .advice = "check camera, tracks and time stamps"}};
 }
 
 Findings no_plane(const Evidence& e) {

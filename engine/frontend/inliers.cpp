@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/frontend/inliers.h"
 
+#include "engine/frontend/static_tracks.h"
 #include "engine/geometry/homography.h"
 #include "engine/geometry/statistics.h"
 
@@ -104,7 +105,7 @@ struct Errors {
 
 Errors errors_of(const Window& window) {
   const int frames = window.frame_count(), tracks = window.track_count();
-  const double unit = pixel_unit(window.K);
+  const double unit = pixel_unit(window);
   Errors errors{Eigen::ArrayXXd(frames, tracks), Eigen::ArrayXd(frames)};
   for (int i = 1; i < frames; ++i) {
     std::vector<double> of_inliers_px;
@@ -314,6 +315,13 @@ void find_planes(Window& window,
   if (window.planes[0].tracks.empty()) window.planes.clear();
 }
 
+void leave_out_static_tracks(const std::vector<Eigen::VectorXd>& sigma_px, Window& window) {
+  window.static_tracks = static_tracks(window.points_px, sigma_px, pixel_unit(window));
+  for (Matrix2Xd& points_px : window.points_px)
+    for (const int j : window.static_tracks)
+      points_px.col(j).setConstant(std::numeric_limits<double>::quiet_NaN());
+}
+
 }  // namespace
 
 std::optional<RobustHomography> homography_ransac(const Matrix2Xd& from,
@@ -369,11 +377,14 @@ Window make_window(const Tracks& tracks,
   Window window;
   window.start = tracks.start;
   window.K = intrinsic_matrix(camera);
+  window.width = camera.width;
+  window.height = camera.height;
   window.exact_reference = tracks.anchored;
   for (int i = 0; i < tracks.frame_count(); ++i) {
     window.timestamps_ns.push_back(recording_timestamps_ns[tracks.start + i]);
     window.points_px.push_back(undistort_all(camera, tracks.raw_px[i]));
   }
+  leave_out_static_tracks(tracks.sigma_px, window);
   window.noise_ratio = noise_ratios(tracks);
   window.lens_moves_px = lens_moves(camera, window);
   RansacOptions ransac = options.ransac;

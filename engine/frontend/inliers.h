@@ -92,11 +92,12 @@ struct InlierOptions {
   std::vector<bool> on_first_plane = {};
 };
 
-/// Undistorts the tracks and selects inliers: between the reference frame and each other frame, and
-/// for `Inliers::consistent` also over the window if enough tracks are consistent, or by extracting
-/// the window's planes. With `on_first_plane`, the first plane is found among these tracks
-/// and all further ones among the others; without planes only these tracks may be inliers.
-/// Rotations are left at the identity. `recording_timestamps_ns` has all frames of the recording.
+/// Undistorts the tracks, leaves out static ones (`static_tracks`) and selects inliers: between the
+/// reference frame and each other frame, and for `Inliers::consistent` also over the window if
+/// enough tracks are consistent, or by extracting the window's planes. With `on_first_plane`, the
+/// first plane is found among these tracks and all further ones among the others; without planes
+/// only these tracks may be inliers. Rotations are left at the identity. `recording_timestamps_ns`
+/// has all frames of the recording.
 Window make_window(const Tracks& tracks,
                    const Camera& camera,
                    std::span<const std::int64_t> recording_timestamps_ns,

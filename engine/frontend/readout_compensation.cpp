@@ -111,11 +111,11 @@ struct Block {
   Eigen::Matrix<double, Eigen::Dynamic, 8> by_homography;
 };
 
-int region_of(const Vector2d& p, const Vector2d& center_px) {
+int region_of(const Vector2d& p, const Vector2d& size_px) {
   const auto cell = [](double share) {
     return std::clamp(static_cast<int>(kRegions * share), 0, kRegions - 1);
   };
-  return cell(p.x() / (2 * center_px.x())) + kRegions * cell(p.y() / (2 * center_px.y()));
+  return cell(p.x() / size_px.x()) + kRegions * cell(p.y() / size_px.y());
 }
 
 void add_block(const Window& window,
@@ -133,7 +133,8 @@ void add_block(const Window& window,
   const auto H = fit_homography(from, to);
   if (!H) return;
   const Vector2d center_px = window.K.topRightCorner<2, 1>();
-  const double scale_px = center_px.norm();
+  const Vector2d size_px = image_size_px(window);
+  const double scale_px = 0.5 * size_px.norm();
   const auto n = static_cast<Eigen::Index>(seen.size());
   Block block;
   block.residuals.resize(2 * n);
@@ -147,7 +148,7 @@ void add_block(const Window& window,
     Eigen::Matrix<double, 2, 3> d_pixel;
     d_pixel << 1, 0, -moved.x(), 0, 1, -moved.y();
     const Eigen::Matrix2d J = d_pixel * H->leftCols<2>() / y.z();
-    block.region.push_back(region_of(from.col(k), center_px));
+    block.region.push_back(region_of(from.col(k), size_px));
     block.residuals.segment<2>(2 * k) = to.col(k) - moved;
     block.by_unknowns.middleRows<2>(2 * k) =
         displacements(window, frame, j, px_s.col(j).head<2>()) -
@@ -343,6 +344,7 @@ Window with_late_rows(const Window& window, const std::function<Window(double)>&
     if (row_delay_s == 0) return window;
     Window late = with_points(select(row_delay_s), window.points_px);
     late.lens_moves_px = window.lens_moves_px;
+    late.static_tracks = window.static_tracks;
     late.row_delay = window.row_delay;
     late.rows = window.rows;
     late.image_rows = window.image_rows;

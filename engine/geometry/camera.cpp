@@ -197,7 +197,10 @@ double pixel_unit(const Camera& camera) {
 }
 
 double pixel_unit(const Eigen::Matrix3d& K) {
-  return unit_of_diagonal(std::hypot(2 * K(0, 2) + 1, 2 * K(1, 2) + 1));
+  constexpr double kUsualDiagonal = 1.25;  // of a 4:3 image that is as wide as its focal length
+  const bool is_inside = K(0, 2) > 0 && K(1, 2) > 0;
+  return unit_of_diagonal(is_inside ? std::hypot(2 * K(0, 2) + 1, 2 * K(1, 2) + 1)
+                                    : kUsualDiagonal * K(0, 0));
 }
 
 Vector2d project(const Camera& camera, const Eigen::Vector3d& point_c) {

@@ -217,6 +217,11 @@ inline bool is_excluded(const Inspection& inspection, int column) {
          settings.mask.contain(MaskKind::leave_out, tracks.raw_px[0].col(column));
 }
 
+/// Returns whether the track of a column does not move in the image (`Window::static_tracks`).
+inline bool is_static(const Inspection& inspection, int column) {
+  return std::ranges::binary_search(inspection.window->static_tracks, column);
+}
+
 /// Returns what the inliers are counted from and how they were selected, for people: "tracks,
 /// consistent".
 std::string inliers_note(const Inspection& inspection);

@@ -82,7 +82,7 @@ std::optional<std::string> reason_against_points(const Window& window,
   if (angle_deg < kLeastParallaxDeg)
     return fmt::format(
         "median parallax {:.1f} deg, at least {} are needed", angle_deg, kLeastParallaxDeg);
-  const double most_px = kMostPairErrorPx * pixel_unit(window.K);
+  const double most_px = kMostPairErrorPx * pixel_unit(window);
   if (error_px > most_px)
     return fmt::format(
         "median error of its points {:.1f} px, the limit is {:.3g}", error_px, most_px);

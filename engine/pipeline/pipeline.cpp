@@ -12,6 +12,7 @@
 #include "engine/methods/common/window_checks.h"
 #include "engine/pipeline/method_defaults.h"
 
+#include <limits>
 #include <utility>
 
 #include <fmt/format.h>
@@ -137,6 +138,9 @@ Window window_of(const Tracks& tracks,
   return with_late_rows(window, [&](double row_delay_s) {
     Tracks at_stamps = tracks;
     at_stamps.raw_px = without_readout(window, std::move(at_stamps.raw_px), row_delay_s);
+    for (Eigen::Matrix2Xd& raw_px : at_stamps.raw_px)
+      for (const int j : window.static_tracks)
+        raw_px.col(j).setConstant(std::numeric_limits<double>::quiet_NaN());
     return make_window(at_stamps, camera, timestamps_ns, selection);
   });
 }

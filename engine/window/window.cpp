@@ -109,13 +109,26 @@ double homography_error_px(const Window& window) {
   return median(std::move(errors));
 }
 
+Eigen::Vector2d image_size_px(const Window& window) {
+  if (window.width > 0 && window.height > 0) return Eigen::Vector2d(window.width, window.height);
+  const Eigen::Vector2d center = window.K.topRightCorner<2, 1>();
+  if (center.minCoeff() > 0) return 2 * center + Eigen::Vector2d::Ones();
+  return window.K(0, 0) * Eigen::Vector2d(1, 0.75);
+}
+
+double pixel_unit(const Window& window) {
+  return window.width == 0 || window.height == 0
+             ? pixel_unit(window.K)
+             : pixel_unit(Camera{.width = window.width, .height = window.height});
+}
+
 std::vector<std::vector<Eigen::Matrix2Xd>> typical_lens_moves_px(const Window& window) {
   const Eigen::Vector2d center = window.K.topRightCorner<2, 1>();
-  const double width_px = 2 * center.x() + 1;
-  const double corner_px = center.norm();
+  const Eigen::Vector2d size_px = image_size_px(window);
+  const double corner_px = 0.5 * size_px.norm();
   const double focal_share = window.camera_is_guess ? 0.2 : kTypicalLensShare;
   const double center_share = window.camera_is_guess ? 0.02 : kTypicalLensShare;
-  const double moved_px = window.camera_is_guess ? 0.03 * corner_px : 0.5 * pixel_unit(window.K);
+  const double moved_px = window.camera_is_guess ? 0.03 * corner_px : 0.5 * pixel_unit(window);
   std::vector<std::vector<Eigen::Matrix2Xd>> moves(5);
   for (const Eigen::Matrix2Xd& points : window.points_px) {
     const Eigen::Matrix2Xd p = points.colwise() - center;
@@ -124,7 +137,7 @@ std::vector<std::vector<Eigen::Matrix2Xd>> typical_lens_moves_px(const Window& w
     moves[0].push_back(focal_share * p);
     for (int axis = 0; axis < 2; ++axis) {
       Eigen::Matrix2Xd shift = Eigen::Matrix2Xd::Zero(2, p.cols());
-      shift.row(axis).setConstant(center_share * width_px);
+      shift.row(axis).setConstant(center_share * size_px.x());
       moves[1 + axis].push_back(std::move(shift));
     }
     moves[3].push_back(cubic);

@@ -74,6 +74,7 @@ struct WindowPlane {
 struct Window {
   int start = 0;                            ///< reference frame, index in the recording
   Eigen::Matrix3d K;                        ///< intrinsics of the undistorted image [px]
+  int width = 0, height = 0;                ///< of the recorded image [px]; 0: unknown
   std::vector<std::int64_t> timestamps_ns;  ///< one per frame
   std::vector<Eigen::Matrix2Xd> points_px;  ///< one per frame, 2 x tracks, undistorted; NaN: lost
   /// Standard deviation of each observation over the root mean square of all; one vector per frame.
@@ -85,6 +86,9 @@ struct Window {
   /// counted from the principal point.
   std::vector<Eigen::VectorXd> rows = {};
   int image_rows = 0;  ///< number of rows of the recorded image, or columns if read; 0: unknown
+  /// Columns of tracks that do not move in the image although the others predict it, ascending.
+  /// They are left out: their points are NaN (`static_tracks`, engine/frontend/static_tracks.h).
+  std::vector<int> static_tracks = {};
   std::vector<std::vector<bool>> inlier;  ///< one per frame and track: observed, agrees with H_i1
   std::vector<Eigen::Matrix3d> H_i1;      ///< p_i ~ H_i1 p_1 by RANSAC [px]; H_11 = I
   Inliers inliers = Inliers::per_frame;   ///< how `inlier` was chosen
@@ -139,6 +143,12 @@ struct Window {
   /// Returns the index of the plane that contains the track; nullopt if none does.
   std::optional<int> plane_of(int track) const;
 };
+
+/// Returns the size of the recorded image [px]; if unknown, that of an image with the principal
+/// point in its middle, or of a usual lens if a coordinate of that is not above zero.
+Eigen::Vector2d image_size_px(const Window& window);
+/// Returns the `pixel_unit` of the recorded image.
+double pixel_unit(const Window& window);
 
 /// Returns the change of the points for one standard deviation of each parameter of a typical
 /// calibration, in the form of `lens_moves_px`: focal length 0.3 %, principal point 0.3 % of the

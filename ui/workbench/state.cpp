@@ -143,7 +143,8 @@ std::vector<std::int64_t> tracks_in_view(const WorkbenchState& state) {
 std::vector<std::int64_t> outliers_in_view(const WorkbenchState& state) {
   return tracks_if(state, [&](int frame, int column) {
     const Inspection& inspection = *state.results.inspection;
-    return !inspection.window->inlier[frame][column] && !is_excluded(inspection, column);
+    return !inspection.window->inlier[frame][column] && !is_excluded(inspection, column) &&
+           !is_static(inspection, column);
   });
 }
 

@@ -246,11 +246,11 @@ std::string kitti_line(std::int64_t /*ns*/, const Pose& camera) {
   return fmt::format("{:.9e}\n", fmt::join(T.data(), T.data() + T.size(), " "));
 }
 
-/// Returns the number of tracks that were not excluded by hand.
+/// Returns the number of tracks that were neither excluded by hand nor left out as static.
 int used_tracks(const Inspection& inspection) {
   int count = 0;
   for (int column = 0; column < inspection.window->track_count(); ++column)
-    count += is_excluded(inspection, column) ? 0 : 1;
+    count += is_excluded(inspection, column) || is_static(inspection, column) ? 0 : 1;
   return count;
 }
 

@@ -131,6 +131,7 @@ std::string verdict_of(const Inspection& inspection, const TrackLife& life) {
   const Settings& settings = inspection.settings;
   if (std::ranges::find(settings.exclude, life.id) != settings.exclude.end()) return "excluded";
   if (is_excluded(inspection, life.column)) return "in a mask that leaves out its tracks";
+  if (is_static(inspection, life.column)) return "does not move in the image, while others do";
   const Tally tally(life, inspection.window->start);
   const auto plane = inspection.window->plane_of(life.column);
   const Eigen::Vector2d place_px = inspection.tracks->raw_px[0].col(life.column);

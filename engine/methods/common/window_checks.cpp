@@ -138,7 +138,7 @@ std::optional<std::string> reason_not_to_try(const Window& window) {
                          kLeastInliers);
     }
   }
-  const double least_px = kLeastParallaxPx * pixel_unit(window.K);
+  const double least_px = kLeastParallaxPx * pixel_unit(window);
   FrameErrors widest;
   for (int i = 1; i < window.frame_count(); ++i) {
     const FrameErrors errors = frame_errors(window, i);
@@ -237,7 +237,7 @@ std::vector<int> beyond_horizon(const Window& window, const Plane& plane) {
 }
 
 double most_residual_px(const Window& window) {
-  return kDistrustFactor * homography_error_px(window) + kDistrustPx * pixel_unit(window.K);
+  return kDistrustFactor * homography_error_px(window) + kDistrustPx * pixel_unit(window);
 }
 
 Initialization trusted(const Window& window, Initialization result) {

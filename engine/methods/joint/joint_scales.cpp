@@ -123,7 +123,7 @@ void find_lens_residual(const Model& model, const State& state, const Normals& a
   const LensProblem problem = lens_problem(model, state, at, scales);
   double best = -std::numeric_limits<double>::infinity();
   for (const double lens : kLens) {
-    const double lens_px = lens * pixel_unit(model.window().K);
+    const double lens_px = lens * pixel_unit(model.window());
     const double likelihood = log_likelihood(problem, lens_px);
     if (likelihood <= best) continue;
     best = likelihood;

@@ -109,7 +109,9 @@ ResultRow rms_row(const Initialization& result) {
 
 int used_tracks(const Inspection& inspection) {
   const Settings& settings = inspection.settings;
-  int used = inspection.window->track_count() - static_cast<int>(settings.exclude.size());
+  const Window& window = *inspection.window;
+  int used = window.track_count() -
+             static_cast<int>(settings.exclude.size() + window.static_tracks.size());
   if (settings.mask.areas.empty()) return used;
   for (const std::int64_t id : left_out(*inspection.tracks, settings.mask))
     used -= std::ranges::binary_search(settings.exclude, id) ? 0 : 1;

@@ -151,11 +151,14 @@ LegendRows track_rows(const Canvas& canvas) {
   const Inspection& inspection = canvas.inspection;
   const Window& window = *inspection.window;
   std::map<int, int> on_plane = {{window.leader, 0}};
-  int outliers = 0, excluded = 0;
+  int outliers = 0, excluded = 0, fixed = 0;
   for (int track = 0; track < inspection.tracks->track_count(); ++track) {
     if (!inspection.tracks->seen(canvas.frame, track)) continue;
     const auto plane = plane_of_track(window, canvas.frame, track);
-    ++(plane ? on_plane[*plane] : is_excluded(inspection, track) ? excluded : outliers);
+    ++(plane                            ? on_plane[*plane]
+       : is_excluded(inspection, track) ? excluded
+       : is_static(inspection, track)   ? fixed
+                                        : outliers);
   }
   LegendRows rows = {
       {Sign::circle, plane_color(window.leader), counted(on_plane[window.leader], "inlier")}};
@@ -165,6 +168,8 @@ LegendRows track_rows(const Canvas& canvas) {
                       plane_color(plane),
                       fmt::format("{} on {}", count, plane_title(inspection, plane))});
   rows.push_back({Sign::cross, color_of(Role::outlier), counted(outliers, "outlier")});
+  if (fixed > 0)
+    rows.push_back({Sign::square, color_of(Role::text_dim), fmt::format("{} do not move", fixed)});
   if (excluded > 0)
     rows.push_back({Sign::dot, color_of(Role::text_dim), fmt::format("{} excluded", excluded)});
   return rows;

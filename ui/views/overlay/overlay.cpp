@@ -314,6 +314,7 @@ std::vector<int> other_planes(const Window& window) {
 
 SignStyle track_style(const Inspection& inspection, int frame, int column) {
   if (is_excluded(inspection, column)) return {Sign::dot, color_of(Role::text_dim)};
+  if (is_static(inspection, column)) return {Sign::square, color_of(Role::text_dim)};
   const auto plane = plane_of_track(*inspection.window, frame, column);
   if (!plane) return {Sign::cross, color_of(Role::outlier)};
   const bool leading = *plane == inspection.window->leader;
