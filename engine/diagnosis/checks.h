@@ -33,4 +33,7 @@ Findings unstable_method(const Evidence& evidence);
 Findings guessed_camera(const Evidence& evidence);
 Findings implausible_intrinsics(const Evidence& evidence);
 
+// texture_checks.cpp
+Findings repeated_texture(const Evidence& evidence);
+
 }  // namespace gpo::check

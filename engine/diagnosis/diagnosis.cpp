@@ -52,6 +52,7 @@ std::span<const Check> checks() {
       {"not-finite", "A number that is not finite", Of::length, false, not_finite},
       {"no-plane", "No plane among the tracks", Of::window, false, no_plane},
       {"implausible-intrinsics", "Implausible focal length or principal point", Of::recording, true, implausible_intrinsics},
+      {"repeated-texture", "Texture that repeats within the motion of a frame", Of::window, true, repeated_texture},
       {"rotation-only", "Rotations alone explain the images", Of::length, false, rotation_only},
       {"method-failed", "The method failed", Of::result, false, method_failed},
       {"late-clock", "The gyroscope's clock is late", Of::result, false, late_clock},

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/frontend/tracking/repetition.h"
 
+#include "engine/geometry/statistics.h"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -17,11 +19,10 @@ using Eigen::Matrix2Xd;
 using Eigen::Vector2d;
 using Eigen::VectorXd;
 
-constexpr int kHalf = 8;  // half the side of a template [px of its level]
-constexpr int kReferenceTracks =
-    24;                          // compared in the reference image, from which few periods follow
-constexpr int kStepTracks = 32;  // compared in each step
-constexpr int kHalvings = 2;     // from the reference image's level to the coarsest
+constexpr int kHalf = 8;              // half the side of a template [px of its level]
+constexpr int kReferenceTracks = 24;  // compared in the reference image
+constexpr int kStepTracks = 32;       // compared from image to image
+constexpr int kHalvings = 2;          // from the reference image's level to the coarsest
 // Least correlation of the median track with a second place. It is 0.55 to 0.68 on random texture
 // and in rooms, 0.80 to 0.99 on tiles of 26 to 75 px, bricks, dots and chessboards.
 constexpr double kAlike = 0.75;
@@ -40,12 +41,6 @@ std::vector<int> spread(Eigen::Index tracks, Eigen::Index count) {
   const Eigen::Index step = std::max<Eigen::Index>(1, tracks / count);
   for (Eigen::Index j = 0; j < tracks; j += step) some.push_back(static_cast<int>(j));
   return some;
-}
-
-double median_of(std::vector<double> values) {
-  const auto middle = values.begin() + std::ssize(values) / 2;
-  std::ranges::nth_element(values, middle);
-  return *middle;
 }
 
 cv::Point on_level(const Vector2d& raw_px, int level) {
@@ -188,10 +183,10 @@ std::vector<CommonMotion> common_motions(const Crossing& crossing,
   for (const Vector2d& start_px : similar_motions(crossing, tracks, level)) {
     const PlaceMotions found = refined_from(crossing, start_px, tracks);
     const Matrix2Xd off_px = found.px - crossing.predicted_px(Eigen::all, tracks);
-    const Vector2d px(median_of({off_px.row(0).begin(), off_px.row(0).end()}),
-                      median_of({off_px.row(1).begin(), off_px.row(1).end()}));
+    const Vector2d px(median({off_px.row(0).begin(), off_px.row(0).end()}),
+                      median({off_px.row(1).begin(), off_px.row(1).end()}));
     const VectorXd& correlations = found.correlations;
-    motions.push_back({px, correlations, median_of({correlations.begin(), correlations.end()})});
+    motions.push_back({px, correlations, median({correlations.begin(), correlations.end()})});
   }
   const double most = std::ranges::max_element(motions, {}, &CommonMotion::typical)->typical;
   std::erase_if(motions, [&](const CommonMotion& m) { return m.typical < most - kFine; });
@@ -266,7 +261,7 @@ RepeatedFlow repeated_flow(const SmoothedPyramid& from,
   Crossing crossing{from, to, raw_px, predicted_px, periods_px / 3, {}};
   for (const double period_px : periods_px)
     crossing.levels.push_back(resolving_level(period_px, from));
-  const double period_px = median_of({periods_px.begin(), periods_px.end()});
+  const double period_px = median({periods_px.begin(), periods_px.end()});
   const std::vector<CommonMotion> motions = common_motions(
       crossing, spread(raw_px.cols(), kStepTracks), resolving_level(period_px, from));
   const auto [motion_px, margin] = chosen_of(motions, period_px / 2);
