@@ -290,7 +290,7 @@ std::string why_useless(const GyroscopeFit& fit) {
     return fmt::format(
         "images and gyroscope turn differently: their rates have a correlation of {:.2f}",
         fit.correlation);
-  if (fit.rotation_sigma_deg.maxCoeff() > kMostRotationSigma_deg)
+  if (!(fit.rotation_sigma_deg.array() <= kMostRotationSigma_deg).all())
     return fmt::format(
         "the camera turns too little, or about one axis only: the rotation between gyroscope and "
         "camera is uncertain by {:.1f} deg",

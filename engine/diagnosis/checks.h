@@ -42,4 +42,7 @@ Findings moving_objects(const Evidence& evidence);
 Findings guessed_camera(const Evidence& evidence);
 Findings implausible_intrinsics(const Evidence& evidence);
 
+// texture_checks.cpp
+Findings repeated_texture(const Evidence& evidence);
+
 }  // namespace gpo::check

@@ -56,6 +56,7 @@ std::span<const Check> checks() {
       {"implausible-intrinsics", "Implausible focal length or principal point", Of::recording, true, implausible_intrinsics},
       {"truth-conventions", "The ground truth fits by another convention", Of::window, false, truth_conventions},
       {"static-tracks", "Tracks that do not move while others do", Of::window, true, static_tracks},
+      {"repeated-texture", "Texture that repeats within the motion of a frame", Of::window, true, repeated_texture},
       {"rotation-only", "Rotations alone explain the images", Of::length, false, rotation_only},
       {"method-failed", "The method failed", Of::result, false, method_failed},
       {"late-clock", "The gyroscope's clock is late", Of::result, false, late_clock},

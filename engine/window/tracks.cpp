@@ -12,6 +12,17 @@ constexpr double kUnseen = std::numeric_limits<double>::quiet_NaN();
 
 }  // namespace
 
+std::vector<int> ambiguous_frames(const Repetition& repetition) {
+  const auto& margins = repetition.margins;
+  const auto ambiguous = [&](int i) {
+    return i < 1 || i >= std::ssize(margins) || margins[i] < kDistinctMotion;
+  };
+  std::vector<int> frames;
+  for (int i = 1; i < std::ssize(margins); ++i)
+    if (ambiguous(i - 1) && ambiguous(i) && ambiguous(i + 1)) frames.push_back(i);
+  return frames;
+}
+
 Tracks select_tracks(std::span<const TrackObservation> observations, int start, int frames) {
   Tracks tracks;
   tracks.start = start;

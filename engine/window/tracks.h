@@ -38,6 +38,26 @@ struct TrackEnd {
   double limit = std::numeric_limits<double>::quiet_NaN();
 };
 
+/// Texture around the tracks that repeats within the motion that tracking allows, such as tiles:
+/// each motion of a frame then has others, periods away, that fit about as well (engine/method.md,
+/// "Repeated texture").
+struct Repetition {
+  /// From each track in the reference frame to the nearest place that looks alike, 2 x tracks [px].
+  Eigen::Matrix2Xd period_px;
+  /// One per frame: how much better the tracks fit the motion since the frame before than the best
+  /// other one, in standard deviations; infinite in the first frame and if there is no other one.
+  std::vector<double> margins = {};
+};
+
+/// Least margin of a motion that the images distinguish from others. Of windows that were tracked
+/// right, over tiles, bricks, dots and chessboards of 17 to 75 px, the median is at least 5; of
+/// those that were wrong by periods, over exact lattices, at most 0.9 but for single frames.
+inline constexpr double kDistinctMotion = 4;
+
+/// Returns the frames whose motion the images do not distinguish from another one, nor that of the
+/// frame before or after.
+std::vector<int> ambiguous_frames(const Repetition& repetition);
+
 /// Tracks that start in the reference frame, in raw pixels. Column j of every matrix is track j;
 /// NaN if not observed.
 struct Tracks {
@@ -52,6 +72,8 @@ struct Tracks {
   /// One per track; nullopt if followed to the last frame. Empty for external tracks.
   std::vector<std::optional<TrackEnd>> ends = {};
   bool anchored = false;  ///< aligned with their templates in the reference frame
+  /// In anchored tracking; nullopt if the texture does not repeat.
+  std::optional<Repetition> repetition = {};
 
   int frame_count() const { return static_cast<int>(raw_px.size()); }
   int track_count() const { return static_cast<int>(ids.size()); }

@@ -21,11 +21,19 @@ struct Step {
   const cv::Mat& image;
   const Matrix2Xd& before_px;
   const AnchorOptions& options;
+  std::vector<Warp> before = anchors.warps;  ///< in the image before
   FollowedTracks aligned{before_px.cols()};
 
   bool was_seen(int j) const { return before_px.col(j).allFinite(); }
   bool is_seen(int j) const { return aligned.raw_px.col(j).allFinite(); }
   Vector2d motion_px(int j) const { return aligned.raw_px.col(j) - before_px.col(j); }
+
+  bool repeats() const { return anchors.periods_px.size() > 0; }
+  /// Half of a period or more would be a jump; a third leaves a margin.
+  double farthest_px(int j) const {
+    const double most = options.search.farthest_px;
+    return repeats() ? std::min(most, anchors.periods_px[j] / 3) : most;
+  }
 
   void take(int j, const Found& found) {
     aligned.ends[j] = found.end;
@@ -40,12 +48,13 @@ struct Step {
 
 Found search_from(const Step& step, int j, const Vector2d& motion_px) {
   const PatchTemplate& patch = step.anchors.patches[j];
-  Warp start = step.anchors.warps[j];
+  Warp start = step.before[j];
   start.center += motion_px;
-  const Found found = search(step.image, patch, start, MotionModel::affine, step.options.search);
+  SearchOptions options = step.options.search;
+  options.farthest_px = step.farthest_px(j);
+  const Found found = search(step.image, patch, start, MotionModel::affine, options);
   // An occluder of a part of the template may distort an affine alignment: then only shift it.
-  return found.end ? search(step.image, patch, start, MotionModel::shift, step.options.search)
-                   : found;
+  return found.end ? search(step.image, patch, start, MotionModel::shift, options) : found;
 }
 
 std::vector<Vector2d> motions_around(const Step& step, int j) {
@@ -66,7 +75,7 @@ Vector2d median_motion(std::vector<Vector2d> motions) {
 }
 
 bool moves_with_neighbors(const Step& step, int j) {
-  const double most = step.options.search.farthest_px * step.options.search.farthest_px;
+  const double most = step.farthest_px(j) * step.farthest_px(j);
   const Vector2d motion = step.motion_px(j);
   int alike = 0;
   for (const int k : step.anchors.neighborhoods[j].neighbors) {
@@ -90,8 +99,9 @@ std::optional<TrackEnd> jump(const Step& step, int j) {
   for (const Vector2d& motion : around) off_px.push_back((motion - step.motion_px(j)).norm());
   const auto decisive = off_px.begin() + step.options.least_alike - 1;
   std::ranges::nth_element(off_px, decisive);
-  const double limit = std::max(step.options.search.farthest_px,
-                                step.options.most_unlike * median_motion(around).norm());
+  double limit = std::max(step.options.search.farthest_px,
+                          step.options.most_unlike * median_motion(around).norm());
+  if (step.repeats()) limit = step.farthest_px(j);
   if (*decisive <= limit) return std::nullopt;
   return TrackEnd{.reason = LossReason::far_from_prediction, .value = *decisive, .limit = limit};
 }
@@ -164,7 +174,8 @@ Anchors make_anchors(const cv::Mat& image, const Matrix2Xd& raw_px, const Camera
                   .patches = {},
                   .corners_px = raw_px,
                   .neighborhoods = make_neighborhoods(camera, raw_px),
-                  .warps = {}};
+                  .warps = {},
+                  .periods_px = {}};
   for (Eigen::Index j = 0; j < raw_px.cols(); ++j) {
     const Vector2d middle = raw_px.col(j).array().round();
     anchors.patches.push_back(

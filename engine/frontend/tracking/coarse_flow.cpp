@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdint>
 #include <cstring>
+#include <limits>
 
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
@@ -17,10 +18,11 @@ using Eigen::Matrix4d;
 using Eigen::Vector2d;
 using Eigen::Vector4d;
 
-constexpr int kHalf = 8;                 // half the side of a patch [px]
-constexpr int kFarthest = 6;             // global motion [px of the smallest image]
-constexpr int kMostSteps = 8;            // Gauss-Newton steps on a level
-constexpr double kConverged = 0.1;       // length of its last step [px of the level]
+constexpr int kHalf = 8;            // half the side of a patch [px]
+constexpr int kFarthest = 6;        // global motion [px of the smallest image]
+constexpr int kMostSteps = 8;       // Gauss-Newton steps on a level
+constexpr double kConverged = 0.1;  // length of its last step [px of the level]
+constexpr double kAnyDistance = std::numeric_limits<double>::infinity();
 constexpr int kMostDeviation = 32 * 64;  // squares of a row's differences fit into 32 bits
 
 Patch empty_patch() {
@@ -121,12 +123,17 @@ GPO_AVX2_FMA Eigen::Matrix4d take_avx2_fma(const cv::Mat& image,
   return take(image, middle, patch);
 }
 
+struct PatchMotion {
+  Vector2d px;
+  double correlation = -1;
+};
+
 /// Returns the motion of the patch around `from_px` on a level, or `guess_px` if none fits better.
-Vector2d moved(const cv::Mat& from,
-               const cv::Mat& to,
-               const Vector2d& from_px,
-               const Vector2d& guess_px,
-               Patch& patch) {
+PatchMotion moved(const cv::Mat& from,
+                  const cv::Mat& to,
+                  const Vector2d& from_px,
+                  const Vector2d& guess_px,
+                  Patch& patch) {
   // Near the image border, use the nearest patch that is inside of both images.
   const Vector2d least = (Vector2d::Constant(kHalf + 1) - guess_px).cwiseMax(kHalf + 1);
   const Vector2d most =
@@ -136,15 +143,14 @@ Vector2d moved(const cv::Mat& from,
                               .cwiseMin(most.array().floor().matrix())
                               .array()
                               .round();
-  if (!((middle - least).minCoeff() >= 0)) return guess_px;
+  if (!((middle - least).minCoeff() >= 0)) return {guess_px};
   const Matrix4d normal =
       take_pixels(from, {static_cast<int>(middle.x()), static_cast<int>(middle.y())}, patch);
   Matrix4d inverse = normal.inverse();
   if (!inverse.allFinite()) inverse = Eigen::LDLT<Matrix4d>(normal).solve(Matrix4d::Identity());
   const double n = normal(3, 3);
   Vector2d moved_px = guess_px;
-  Vector2d best_px = guess_px;
-  double best = -1;
+  PatchMotion best{guess_px};
   for (int step = 0; step < kMostSteps; ++step) {
     const Warp warp{middle + moved_px};
     if (!is_inside(to.size(), patch, warp)) break;
@@ -152,18 +158,15 @@ Vector2d moved(const cv::Mat& from,
     const Vector4d b(sums.products[0], sums.products[1], sums.products[6], sums.products[7]);
     const double variances = (sums.squares - b[3] * b[3] / n) * normal(2, 2);
     const double correlation = variances > 0 ? b[2] / std::sqrt(variances) : 0;
-    if (correlation > best) {
-      best = correlation;
-      best_px = moved_px;
-    }
+    if (correlation > best.correlation) best = {moved_px, correlation};
     const Vector4d solution = inverse * b;
     if (!(solution[2] > 0)) break;
     const Vector2d step_px = -solution.head<2>() / solution[2];
     if (!(step_px.norm() < kHalf)) break;
     moved_px += step_px;
-    if (step_px.norm() < kConverged) return moved_px;
+    if (step_px.norm() < kConverged) return {moved_px, correlation};
   }
-  return best_px;
+  return best;
 }
 
 /// Returns deviations from the mean in 64ths of the standard deviation, invariant to gain and
@@ -239,22 +242,41 @@ Eigen::Matrix4d take_pixels(const cv::Mat& image,
   return avx2_fma ? take_avx2_fma(image, middle, patch) : take(image, middle, patch);
 }
 
+PlaceMotions refined_motions(const SmoothedPyramid& from,
+                             const SmoothedPyramid& to,
+                             const Eigen::Matrix2Xd& raw_px,
+                             const Eigen::Matrix2Xd& start_px,
+                             const std::vector<int>& levels,
+                             const Eigen::VectorXd& farthest_px) {
+  Patch patch = empty_patch();
+  PlaceMotions motions{start_px, Eigen::VectorXd::Constant(raw_px.cols(), -1)};
+  for (Eigen::Index j = 0; j < raw_px.cols(); ++j) {
+    for (int now = levels[j]; now >= 1; --now) {
+      const double scale = std::ldexp(1.0, -now);
+      // The center of a level's first pixel is the center of four pixels of the finer level.
+      const Vector2d px = scale * (raw_px.col(j).array() + 0.5) - 0.5;
+      const auto [moved_px, correlation] =
+          moved(from[now], to[now], px, scale * motions.px.col(j), patch);
+      const bool near = (moved_px / scale - start_px.col(j)).norm() <= farthest_px[j];
+      if (near) motions.px.col(j) = moved_px / scale;
+      motions.correlations[j] = near ? correlation : -1;
+    }
+  }
+  return motions;
+}
+
+double farthest_motion_px(const SmoothedPyramid& pyramid) {
+  return std::ldexp(kFarthest, static_cast<int>(pyramid.size()) - 1);
+}
+
 Eigen::Matrix2Xd coarse_flow(const SmoothedPyramid& from,
                              const SmoothedPyramid& to,
                              const Eigen::Matrix2Xd& raw_px) {
-  Patch patch = empty_patch();
-  const Vector2d start =
-      global_motion(from.back(), to.back()) * std::ldexp(1.0, static_cast<int>(from.size()) - 1);
-  Eigen::Matrix2Xd flow = start.replicate(1, raw_px.cols());
-  for (Eigen::Index j = 0; j < raw_px.cols(); ++j) {
-    for (auto level = static_cast<int>(from.size()) - 1; level >= 1; --level) {
-      const double scale = std::ldexp(1.0, -level);
-      // The center of a level's first pixel is the center of four pixels of the finer level.
-      const Vector2d px = scale * (raw_px.col(j).array() + 0.5) - 0.5;
-      flow.col(j) = moved(from[level], to[level], px, scale * flow.col(j), patch) / scale;
-    }
-  }
-  return flow;
+  const int level = static_cast<int>(from.size()) - 1;
+  const Vector2d start = global_motion(from.back(), to.back()) * std::ldexp(1.0, level);
+  const auto anywhere = Eigen::VectorXd::Constant(raw_px.cols(), kAnyDistance);
+  const std::vector<int> levels(raw_px.cols(), level);
+  return refined_motions(from, to, raw_px, start.replicate(1, raw_px.cols()), levels, anywhere).px;
 }
 
 }  // namespace gpo

@@ -33,6 +33,25 @@ Eigen::Matrix2Xd coarse_flow(const SmoothedPyramid& from,
                              const SmoothedPyramid& to,
                              const Eigen::Matrix2Xd& raw_px);
 
+/// Motions of places from one image to the next.
+struct PlaceMotions {
+  Eigen::Matrix2Xd px;  ///< 2 x places
+  /// Of each place at half the size with that in the image before; -1 if it was not compared.
+  Eigen::VectorXd correlations;
+};
+
+/// Refines rough motions of places, each from its level of the pyramid down to half the size and no
+/// farther than its `farthest_px` from its start.
+PlaceMotions refined_motions(const SmoothedPyramid& from,
+                             const SmoothedPyramid& to,
+                             const Eigen::Matrix2Xd& raw_px,
+                             const Eigen::Matrix2Xd& start_px,
+                             const std::vector<int>& levels,
+                             const Eigen::VectorXd& farthest_px);
+
+/// Returns the largest motion that `coarse_flow` looks for [px].
+double farthest_motion_px(const SmoothedPyramid& pyramid);
+
 /// Number of template pixels that are summed at a time.
 constexpr int kPatchKernelWidth = 8;
 

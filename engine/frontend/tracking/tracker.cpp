@@ -2,10 +2,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/frontend/tracking/tracker.h"
 
+#include "engine/frontend/tracking/repetition.h"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <tuple>
+#include <utility>
 
 #include <opencv2/features2d.hpp>
 #include <opencv2/imgproc.hpp>
@@ -135,15 +138,27 @@ FollowedTracks follow(const Pyramid& from,
   return after;
 }
 
+/// `earlier` has the tracks one frame before `before`.
 FollowedTracks follow(const SmoothedPyramid& from,
                       const SmoothedPyramid& to,
                       const Eigen::Matrix2Xd& before,
-                      Anchors& anchors) {
+                      const Eigen::Matrix2Xd& earlier,
+                      Anchors& anchors,
+                      std::optional<Repetition>& repetition) {
   std::vector<int> living;
   for (int j = 0; j < before.cols(); ++j)
     if (before.col(j).allFinite()) living.push_back(j);
   Eigen::Matrix2Xd flow_px = Eigen::Matrix2Xd::Constant(2, before.cols(), kLost);
-  flow_px(Eigen::all, living) = coarse_flow(from, to, before(Eigen::all, living));
+  const Eigen::Matrix2Xd places = before(Eigen::all, living);
+  if (repetition) {
+    const Eigen::Matrix2Xd predicted_px = places - earlier(Eigen::all, living);
+    const RepeatedFlow flow =
+        repeated_flow(from, to, places, predicted_px, anchors.periods_px(living));
+    flow_px(Eigen::all, living) = flow.px;
+    repetition->margins.push_back(flow.margin);
+  } else {
+    flow_px(Eigen::all, living) = coarse_flow(from, to, places);
+  }
   return align_tracks(anchors, to.front(), before, flow_px, anchor_options(anchors.camera));
 }
 
@@ -209,12 +224,22 @@ void WindowTracker::add(const cv::Mat& gray) {
     tracks_.forward_backward_px.emplace_back(
         Eigen::VectorXd::Constant(tracks_.track_count(), kLost));
     tracks_.ends.resize(tracks_.track_count());
-    if (anchored) anchors_ = make_anchors(next.front(), tracks_.raw_px[0], camera_);
+    if (anchored) {
+      anchors_ = make_anchors(next.front(), tracks_.raw_px[0], camera_);
+      tracks_.repetition = find_repetition(next, tracks_.raw_px[0]);
+    }
+    if (tracks_.repetition) {
+      anchors_.periods_px = tracks_.repetition->period_px.colwise().norm();
+      tracks_.repetition->margins = {std::numeric_limits<double>::infinity()};
+    }
+    earlier_ = tracks_.raw_px[0];
   } else {
     const double most_px = kMostForwardBackward * patch_unit(camera_);
-    const Eigen::Matrix2Xd& before = tracks_.raw_px.back();
-    append(anchored ? follow(last_, next, before, anchors_) : follow(last_, next, before, most_px),
+    const Eigen::Matrix2Xd before = tracks_.raw_px.back();
+    append(anchored ? follow(last_, next, before, earlier_, anchors_, tracks_.repetition)
+                    : follow(last_, next, before, most_px),
            tracks_);
+    earlier_ = before;
   }
   last_ = std::move(next);
 }
@@ -223,11 +248,17 @@ void WindowTracker::drop_every_second() {
   Tracks kept = tracks_;
   kept.raw_px.clear();
   kept.forward_backward_px.clear();
+  double margin = std::numeric_limits<double>::infinity();  // since the last frame that is kept
+  if (kept.repetition) kept.repetition->margins.clear();
   std::vector<int> moved(tracks_.frame_count());  // the first frame that is kept from here on
   for (int i = 0; i < tracks_.frame_count(); ++i) {
     const bool stays = i % 2 == 0 || i + 1 == tracks_.frame_count();
     moved[i] = kept.frame_count();
+    if (kept.repetition) margin = std::min(margin, tracks_.repetition->margins[i]);
     if (!stays) continue;
+    if (kept.repetition)
+      kept.repetition->margins.push_back(
+          std::exchange(margin, std::numeric_limits<double>::infinity()));
     kept.raw_px.push_back(std::move(tracks_.raw_px[i]));
     kept.forward_backward_px.push_back(std::move(tracks_.forward_backward_px[i]));
   }

@@ -69,6 +69,7 @@ struct Anchors {
   Eigen::Matrix2Xd corners_px;         ///< 2 x tracks, from the templates' middles
   std::vector<Neighborhood> neighborhoods;
   std::vector<Warp> warps;
+  Eigen::VectorXd periods_px;  ///< of each template; empty if the texture does not repeat
 };
 
 /// Makes the templates. `image` is the smoothed reference image; `raw_px`, 2 x
@@ -128,6 +129,7 @@ class WindowTracker {
   Camera camera_;
   Tracks tracks_;
   std::vector<cv::Mat> last_;  ///< pyramid of the last image
+  Eigen::Matrix2Xd earlier_;   ///< tracks in the image before the last one
   Anchors anchors_;            ///< in anchored tracking
 };
 

@@ -161,8 +161,8 @@ void set_rate(Calibration& calibration, const YamlEntry& rate) {
 Pose rigid_motion_of(const YamlEntry& entry, const Eigen::Matrix4d& T) {
   const Eigen::Matrix3d R = T.topLeftCorner<3, 3>();
   constexpr double kTolerance = 1e-2;  // for files with few digits
-  if ((R.transpose() * R - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff() > kTolerance ||
-      R.determinant() < 0)
+  const Eigen::Array33d skew = (R.transpose() * R - Eigen::Matrix3d::Identity()).cwiseAbs();
+  if (!(skew <= kTolerance).all() || R.determinant() < 0)
     yaml_fail(entry, "a matrix that is no rotation", "an orthonormal right-handed 3x3 part");
   if (T.row(3) != Eigen::RowVector4d(0, 0, 0, 1))
     yaml_fail(entry, "another last row", "0, 0, 0, 1");

@@ -39,9 +39,8 @@ std::optional<Pose> pose_of(std::span<const double> T) {
     pose.p_wc[row] = T[4 * row + 3];
   }
   const Eigen::Matrix3d& R = pose.R_wc;
-  if (!pose.p_wc.allFinite() ||
-      !((R.transpose() * R - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff() < kTolerance) ||
-      R.determinant() < 0)
+  const Eigen::Array33d skew = (R.transpose() * R - Eigen::Matrix3d::Identity()).cwiseAbs();
+  if (!pose.p_wc.allFinite() || !(skew < kTolerance).all() || R.determinant() < 0)
     return std::nullopt;
   pose.R_wc = nearest_rotation(R);
   return pose;

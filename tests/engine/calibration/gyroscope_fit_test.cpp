@@ -5,6 +5,7 @@
 #include "engine/calibration/calibration_report.h"
 #include "engine/inspection/studies/studies.h"
 #include "engine/recording/layouts/open_recording.h"
+#include "tests/engine/largest.h"
 #include "tests/engine/rotation_error.h"
 
 #include <cmath>
@@ -215,7 +216,7 @@ TEST_F(RealGyroscope, EurocAgreesWithItsCalibration) {
       const Vector3d off = degrees(1) * so3_log(fit.R_gyro_camera.transpose() * R *
                                                 recording_->gyroscope->R_gyro_camera);
       EXPECT_LT(off.norm(), 1.5);
-      EXPECT_LT((off.array() / fit.rotation_sigma_deg.array()).abs().maxCoeff(), 3);
+      EXPECT_LT(largest(off.cwiseQuotient(fit.rotation_sigma_deg)), 3);
       EXPECT_NEAR(fit.time_offset_s, late_s, 0.005);
       EXPECT_LT((fit.bias_rad_s - R * bias).norm(), 0.01);
     }

@@ -161,5 +161,21 @@ TEST(IgnoredFindings, RefusesKeysThatNoCheckHasOrThatDecide) {
   EXPECT_EQ(message("guessed-camera"), "");
 }
 
+TEST(RepeatedTexture, IsWeakInAmbiguousFrames) {
+  Tracks tracks{.start = 7, .ids = {3, 5}, .raw_px = std::vector(4, Eigen::Matrix2Xd(2, 2))};
+  const auto found = [&] { return findings_of({.tracks = &tracks}, {Of::window}); };
+  EXPECT_THAT(found(), IsEmpty());
+  tracks.repetition = Repetition{Eigen::Matrix2Xd{{20, 0}, {0, 24}}, {kInfinity, 6, 6, 6}};
+  EXPECT_THAT(found(), IsEmpty());
+  tracks.repetition->margins = {kInfinity, 6, 1, 0};
+  ASSERT_EQ(found().size(), 1U);
+  const Finding finding = found()[0];
+  EXPECT_EQ(finding.key, "repeated-texture");
+  EXPECT_EQ(finding.level, Level::weak);
+  EXPECT_THAT(finding.sentence, HasSubstr("every 22 px, and in 1 of 3 frames"));
+  EXPECT_EQ(finding.tracks, tracks.ids);
+  EXPECT_EQ(finding.frames, std::vector<int>{10});
+}
+
 }  // namespace
 }  // namespace gpo::test

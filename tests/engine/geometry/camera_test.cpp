@@ -3,6 +3,7 @@
 #include "engine/geometry/camera.h"
 
 #include "engine/base/error.h"
+#include "tests/engine/largest.h"
 #include "tests/engine/test_folder.h"
 
 #include <cmath>
@@ -125,7 +126,7 @@ TEST(Camera, LensRootIsARootOfTheCovariance) {
   set_lens_covariance(camera, covariance);
   EXPECT_TRUE(is_covariance(from_upper_triangle(camera.covariance)));
   const Eigen::MatrixXd root = lens_root(camera);
-  EXPECT_LT((root * root.transpose() - covariance).cwiseAbs().maxCoeff(), 1e-7);
+  EXPECT_LT(test::largest(root * root.transpose() - covariance), 1e-7);
   EXPECT_EQ(camera.sigmas[1], 1.1);
 }
 

@@ -3,6 +3,7 @@
 #include "engine/geometry/homography.h"
 
 #include "engine/frontend/inliers.h"
+#include "tests/engine/largest.h"
 #include "tests/engine/simulated_window.h"
 
 #include <algorithm>
@@ -108,9 +109,9 @@ RandomMotion random_motion(std::uint64_t seed) {
 }
 
 double difference(const HomographyMotion& a, const HomographyMotion& b) {
-  return std::max({(a.R_21 - b.R_21).cwiseAbs().maxCoeff(),
-                   (a.tau - b.tau).cwiseAbs().maxCoeff(),
-                   (a.normal - b.normal).cwiseAbs().maxCoeff()});
+  const Vector3d parts(
+      largest(a.R_21 - b.R_21), largest(a.tau - b.tau), largest(a.normal - b.normal));
+  return largest(parts);
 }
 
 double nearest(const std::vector<HomographyMotion>& motions, const HomographyMotion& wanted) {

@@ -5,6 +5,7 @@
 #include "engine/geometry/plane.h"
 #include "engine/geometry/statistics.h"
 #include "simulated_motion.h"
+#include "tests/engine/largest.h"
 
 #include <cmath>
 
@@ -334,7 +335,7 @@ TEST(AlignmentProblem, JacobiansAgreeWithFiniteDifferences) {
     const VectorXd slope =
         (residuals(problem, stepped(state, step)) - residuals(problem, stepped(state, -step))) /
         (2 * kSmall);
-    EXPECT_LT((slope - J.col(k)).cwiseAbs().maxCoeff(), 1e-6) << k;
+    EXPECT_LT(test::largest(slope - J.col(k)), 1e-6) << k;
   }
   // Without the accelerometer's bias, whose effect depends on the gyroscope's to second order.
   state.bias.setZero();
@@ -344,7 +345,7 @@ TEST(AlignmentProblem, JacobiansAgreeWithFiniteDifferences) {
     const VectorXd slope = (residuals(simulated_problem(made, *made.poses.bias_rad_s + e), state) -
                             residuals(simulated_problem(made, *made.poses.bias_rad_s - e), state)) /
                            (2 * kSmall);
-    EXPECT_LT((slope - by_bias.col(axis)).cwiseAbs().maxCoeff(), 1e-6) << axis;
+    EXPECT_LT(test::largest(slope - by_bias.col(axis)), 1e-6) << axis;
   }
 }
 

@@ -111,6 +111,7 @@ TEST(OrbitCamera, FitShowsAllPointsWithinTheMarginsAndIsTight) {
     }
     // Touches both margins along the tighter axis.
     const Vector2d before(least.x() + 0.7, least.y() + 0.95), after(0.9 - most.x(), 0.6 - most.y());
+    ASSERT_TRUE(before.allFinite() && after.allFinite());
     EXPECT_GT(before.cwiseMin(after).minCoeff(), -1e-9);
     EXPECT_LT(before.cwiseMax(after).minCoeff(), 1e-9);
     EXPECT_EQ(camera.yaw_deg, made_camera().yaw_deg);

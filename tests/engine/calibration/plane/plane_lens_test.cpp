@@ -4,6 +4,7 @@
 
 #include "engine/base/stop.h"
 #include "engine/geometry/pose.h"
+#include "tests/engine/largest.h"
 
 #include <cmath>
 #include <numbers>
@@ -235,7 +236,7 @@ TEST(PlaneLens, SeparatesRollingShutterFromDistortion) {
     const auto found = lens_from(scene.plane);
     ASSERT_TRUE(found.ok) << found.reason;
     const LensVector errors = found.lens - truth;
-    EXPECT_LT(errors.cwiseQuotient(found.sigma).cwiseAbs().maxCoeff(), 4) << seed;
+    EXPECT_LT(test::largest(errors.cwiseQuotient(found.sigma)), 4) << seed;
     EXPECT_NEAR(found.lens[kReadout], options.readout, 0.02) << seed;
     squares += errors[0] * errors[0];
     const auto upward = lens_from(scene.plane, ReadoutDirection::up);
@@ -318,7 +319,7 @@ TEST(PlaneLens, SeveralPlanesShareTheLens) {
   const auto found = lens_from_planes(planes, {}, guess_of(options.camera));
   ASSERT_TRUE(found.ok) << found.reason;
   EXPECT_EQ(found.views, 36);
-  EXPECT_LT(normalized_errors(found, options.camera).cwiseAbs().maxCoeff(), 4);
+  EXPECT_LT(test::largest(normalized_errors(found, options.camera)), 4);
 }
 
 TEST(PlaneLens, LeavesOutImagesThatDisagreeAndEndsEarlyWhenStopped) {

@@ -4,6 +4,7 @@
 #include "engine/geometry/plane.h"
 #include "engine/geometry/statistics.h"
 #include "tests/engine/desk.h"
+#include "tests/engine/largest.h"
 
 #include <algorithm>
 #include <array>
@@ -208,7 +209,7 @@ TEST(Anchors, FollowTheNeighborsInsteadOfJumping) {
     Anchors anchors = make_anchors(smoothed, corners, camera);
     return align_tracks(anchors, smoothed, corners, flow, options).raw_px - corners;
   };
-  EXPECT_LT(motion_px({}).cwiseAbs().maxCoeff(), 0.01);
+  EXPECT_LT(largest(motion_px({})), 0.01);
   EXPECT_NEAR(motion_px({.least_alike = 30})(0, 14), 16, 0.1);
 }
 
@@ -356,7 +357,7 @@ TEST(Anchors, WorkWithoutNeighbors) {
   Anchors anchors = make_anchors(smoothed, corners, recording->camera);
   const FollowedTracks aligned =
       align_tracks(anchors, smoothed, corners, Eigen::Matrix2Xd::Zero(2, 3));
-  EXPECT_LT((aligned.raw_px - corners).cwiseAbs().maxCoeff(), 0.01);
+  EXPECT_LT(largest(aligned.raw_px - corners), 0.01);
   const Eigen::Matrix2Xd none(2, 0);
   Anchors empty = make_anchors(smoothed, none, recording->camera);
   EXPECT_EQ(align_tracks(empty, smoothed, none, none).raw_px.cols(), 0);

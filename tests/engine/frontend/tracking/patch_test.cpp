@@ -7,6 +7,7 @@
 #include "engine/geometry/statistics.h"
 #include "tests/engine/desk.h"
 #include "tests/engine/frontend/texture.h"
+#include "tests/engine/largest.h"
 
 #include <algorithm>
 #include <cstdint>
@@ -135,7 +136,7 @@ TEST(PatchKernel, TakesPixelsLikeATemplate) {
     const Eigen::Vector4d scale = slow.diagonal().cwiseSqrt();
     const Eigen::Matrix4d off =
         scale.cwiseInverse().asDiagonal() * (normal - slow) * scale.cwiseInverse().asDiagonal();
-    EXPECT_LT(off.cwiseAbs().maxCoeff(), 1e-5);
+    EXPECT_LT(largest(off), 1e-5);
   }
 }
 

@@ -148,6 +148,7 @@ TEST(BoardPose, UncertaintyMatchesTheErrors) {
   for (const Camera& camera : {small_lens(), fisheye()}) {
     const Eigen::Vector3d mean =
         mean_normalized_squares(camera, looking_at(kChessboard, 0.3, 35, 20));
+    ASSERT_TRUE(mean.allFinite());
     EXPECT_GT(mean.minCoeff(), 0.8) << mean.transpose();
     EXPECT_LT(mean.maxCoeff(), 1.25) << mean.transpose();
   }

@@ -4,6 +4,7 @@
 
 #include "engine/inspection/studies/studies.h"
 #include "engine/window/tracks.h"
+#include "tests/engine/largest.h"
 #include "tests/ui/made_inspection.h"
 #include "ui/views/image/image_view.h"
 
@@ -265,7 +266,7 @@ TEST(ContactShadow, IsOnThePlaneAroundTheCubesBase) {
       ASSERT_TRUE(point.has_value());
       const Vector3d from = inspection.cube->axes.transpose() * (*point - inspection.cube->origin);
       EXPECT_LT(std::abs(from.z()), 1e-4);
-      const double reach = from.head<2>().cwiseAbs().maxCoeff();
+      const double reach = test::largest(from.head<2>());
       EXPECT_GE(reach, side / 2 - 1e-4) << "outside of the base";
       farthest = std::max(farthest, reach);
     }
@@ -338,6 +339,7 @@ TEST(Occluders, LeaveOutTrianglesWithOtherTracks) {
       Eigen::Matrix2d sides;
       sides << b - a, c - a;
       const Vector2d weights = sides.inverse() * (gaps.tracks->raw_px[0].col(track) - a);
+      ASSERT_TRUE(weights.allFinite());
       EXPECT_FALSE(weights.minCoeff() > 1e-3 && weights.sum() < 1 - 1e-3) << track;
     }
   }

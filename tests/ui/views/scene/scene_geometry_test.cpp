@@ -25,7 +25,7 @@ template <class Points>
 void expect_in_view(const OrbitCamera& camera, const Points& points, const Vector2d& size) {
   for (const Vector3d& point : points) {
     const Vector2d pixel = on_screen(camera, point, {{0, 0}, size}).value();
-    EXPECT_TRUE(pixel.minCoeff() > 0 && (size - pixel).minCoeff() > 0);
+    EXPECT_TRUE((pixel.array() > 0 && pixel.array() < size.array()).all());
   }
 }
 
