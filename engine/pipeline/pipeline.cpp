@@ -4,6 +4,7 @@
 
 #include "engine/base/error.h"
 #include "engine/frontend/gyroscope_alignment.h"
+#include "engine/frontend/gyroscope_check.h"
 #include "engine/frontend/inliers.h"
 #include "engine/frontend/readout_compensation.h"
 #include "engine/methods/certainty/growth.h"
@@ -198,24 +199,25 @@ WindowRotations window_rotations(const Window& window,
   WindowRotations found{choose(&gyroscope)};
   const Rotations& rotations = found.chosen.rotations;
   if (requested != automatic || rotations.R_wc_images.empty()) return found;
-  const auto [misfit, late_s] = check_gyroscope_against(
-      {window.timestamps_ns, rotations.R_wc_images}, gyroscope, rotations.sigma_rad);
-  if (misfit.empty()) return found;
-  constexpr const char* kAdvice = "run `calibrate --gyroscope`";
-  if (late_s) {
+  const ImageRotations by_images{window.timestamps_ns, rotations.R_wc_images};
+  const GyroscopeCheck check =
+      check_gyroscope_against({&by_images, 1}, gyroscope, rotations.sigma_rad);
+  if (check.misfit == GyroscopeMisfit::none) return found;
+  const std::string text = text_of(check, gyroscope);
+  if (check.late_s) {
     Gyroscope corrected = gyroscope;
-    corrected.time_offset_ns += to_ns(*late_s);
+    corrected.time_offset_ns += to_ns(*check.late_s);
     if (why_not_covered_by(corrected, window).empty()) {
       found.chosen = choose(&corrected);
       found.corrected = std::move(corrected);
       found.note =
           fmt::format("the gyroscope does not fit the images: {}, corrected in this window; {}",
-                      misfit,
-                      kAdvice);
+                      sentence_of(check),
+                      advice_of(check));
       return found;
     }
   }
-  return without_gyroscope(fmt::format(", it does not fit the images: {}; {}", misfit, kAdvice));
+  return without_gyroscope(", it does not fit the images: " + text);
 }
 
 Window with_rotations(Window window, const Rotations& rotations, const InitializeOptions& options) {
