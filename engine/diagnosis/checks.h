@@ -32,4 +32,8 @@ Findings unstable_method(const Evidence& evidence);
 Findings guessed_camera(const Evidence& evidence);
 Findings implausible_intrinsics(const Evidence& evidence);
 
+// gyroscope_checks.cpp: the result against gyroscope and accelerometer.
+Findings camera_at_rest(const Evidence& evidence);
+Findings contradicted_bias(const Evidence& evidence);
+
 }  // namespace gpo::check

@@ -23,7 +23,7 @@ namespace {
 std::vector<Finding> remarked(const Evidence& evidence, std::string_view key) {
   std::vector<Finding> findings;
   for (const Remark& remark : evidence.remarks)
-    if (remark.key == key) findings.push_back({.sentence = remark.sentence});
+    if (remark.key == key) findings.push_back({.sentence = remark.sentence, .advice = remark.advice});
   return findings;
 }
 
@@ -51,6 +51,8 @@ std::span<const Check> checks() {
   static const Check table[] = {
       {"no-plane", "No plane among the tracks", Of::window, false, no_plane},
       {"implausible-intrinsics", "Implausible focal length or principal point", Of::recording, true, implausible_intrinsics},
+      {"camera-at-rest", "The camera rests, the plane moves", Of::window, true, camera_at_rest},
+      {"gyroscope-bias", "The gyroscope's bias contradicts its prior", Of::result, false, contradicted_bias},
       {"rotation-only", "Rotations alone explain the images", Of::length, false, rotation_only},
       {"late-clock", "The gyroscope's clock is late", Of::result, false, late_clock},
       {"rolling-shutter", "A rolling shutter that the method neglects", Of::result, false, neglected_rolling_shutter},
@@ -62,6 +64,7 @@ std::span<const Check> checks() {
       {"method-failed", "The method failed", Of::result, false, method_failed},
       {"unstable-method", "The method depends on a few tracks", Of::result, true, unstable_method},
       {"guessed-camera", "The camera is a guess", Of::recording, true, guessed_camera},
+      {"gyroscope-units", "The gyroscope's unit, hand or direction is wrong", Of::window, false, nullptr},
       {"gyroscope-misfit", "The gyroscope does not fit the images", Of::window, false, nullptr},
       {"faulty-frames", "Frames repeat, or do not show the scene", Of::window, false, nullptr},
       {"missing-plane", "The requested plane does not exist", Of::window, false, nullptr},

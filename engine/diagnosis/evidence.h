@@ -22,6 +22,7 @@ namespace gpo {
 struct Remark {
   std::string_view key;  ///< of the check that reports it
   std::string sentence;
+  std::string advice = {};
 };
 
 /// What is known of a recording, its window and the result. Null or empty: unknown.

@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <filesystem>
 #include <limits>
 #include <numbers>
 #include <utility>
@@ -239,6 +240,24 @@ std::string change_of(const Matrix3d& axes) {
   return fmt::format("its axes are taken as {}", all);
 }
 
+/// Returns what changes the rates, as a command for a file of comma-separated values.
+std::string change_of_file(const GyroscopeCheck& check, const std::filesystem::path& file) {
+  const bool scaled = check.rad_s_per_unit != 1, turned = !check.axes.isIdentity();
+  if (file.extension() != ".csv")
+    return fmt::format(
+        "correct the rates where they are recorded{}",
+        scaled ? fmt::format(": multiply them by {:.9g}", check.rad_s_per_unit) : "");
+  std::string change;
+  if (scaled) change = fmt::format("for (i = 2; i < 5; ++i) $i *= {:.9g}; ", check.rad_s_per_unit);
+  if (turned) change += "x = $2; y = $3; z = $4; ";
+  for (int k = 0; k < 3; ++k)
+    if (turned && check.axes(k, k) != 1)
+      change += fmt::format("${} = {}; ", k + 2, axis_name(check.axes.row(k)));
+  return fmt::format("correct the rates: awk -F, -v OFS=, '/^[0-9]/ {{ {}}} 1' '{}' > rates.csv",
+                     change,
+                     file.string());
+}
+
 bool is_wrong_file(GyroscopeMisfit misfit) { return misfit == unit || misfit == mirrored; }
 
 }  // namespace
@@ -321,46 +340,20 @@ std::string sentence_of(const GyroscopeCheck& check) {
   return sentence;
 }
 
-std::string advice_of(const GyroscopeCheck& check) {
-  switch (check.misfit) {
-    case none:
-      return "";
-    case unit:
-    case mirrored:
-      return "correct the file of its rates";
-    case inverted:
-      return "invert the rotation of T_BS, or run `calibrate --gyroscope`";
-    default:
-      return "run `calibrate --gyroscope`";
-  }
-}
-
-std::string command_of(const GyroscopeCheck& check, const Gyroscope& gyroscope) {
-  if (!is_wrong_file(check.misfit) || gyroscope.file.extension() != ".csv") return "";
-  std::string change;
-  if (check.rad_s_per_unit != 1)
-    change = fmt::format("for (i = 2; i < 5; ++i) $i *= {:.9g}; ", check.rad_s_per_unit);
-  if (!check.axes.isIdentity()) {
-    change += "x = $2; y = $3; z = $4; ";
-    for (int k = 0; k < 3; ++k)
-      if (check.axes(k, k) != 1)
-        change += fmt::format("${} = {}; ", k + 2, axis_name(check.axes.row(k)));
-  }
-  return fmt::format(
-      "awk -F, -v OFS=, '/^[0-9]/ {{ {}}} 1' '{}' > rates.csv", change, gyroscope.file.string());
-}
-
-std::string text_of(const GyroscopeCheck& check, const Gyroscope& gyroscope) {
-  const std::string command = command_of(check, gyroscope);
-  return fmt::format(
-      "{}; {}{}", sentence_of(check), advice_of(check), command.empty() ? "" : ": " + command);
+std::string advice_of(const GyroscopeCheck& check, const Gyroscope& gyroscope) {
+  if (check.misfit == none) return "";
+  if (check.misfit == inverted)
+    return "invert the rotation of T_BS, or run `calibrate --gyroscope`";
+  return is_wrong_file(check.misfit) ? change_of_file(check, gyroscope.file)
+                                     : "run `calibrate --gyroscope`";
 }
 
 std::string why_wrong_rates(std::span<const ImageRotations> windows, const Gyroscope& gyroscope) {
   const GyroscopeCheck check = check_gyroscope_against(windows, gyroscope, 0);
-  return is_wrong_file(check.misfit)
-             ? "the gyroscope does not fit the images: " + text_of(check, gyroscope)
-             : "";
+  return is_wrong_file(check.misfit) ? fmt::format("the gyroscope does not fit the images: {}; {}",
+                                                   sentence_of(check),
+                                                   advice_of(check, gyroscope))
+                                     : "";
 }
 
 }  // namespace gpo

@@ -53,14 +53,9 @@ GyroscopeCheck check_gyroscope_against(std::span<const ImageRotations> windows,
 /// Returns what was seen, as "its axes are about 90 deg off"; empty for `none`.
 std::string sentence_of(const GyroscopeCheck& check);
 
-/// Returns what to do about it, without a final stop; empty for `none`.
-std::string advice_of(const GyroscopeCheck& check);
-
-/// Returns the line of a shell that mends a file of comma-separated rates; empty if none does.
-std::string command_of(const GyroscopeCheck& check, const Gyroscope& gyroscope);
-
-/// Returns sentence, advice and command in one line.
-std::string text_of(const GyroscopeCheck& check, const Gyroscope& gyroscope);
+/// Returns what to do about it; empty for `none`. For a wrong unit or left-handed axes in a file of
+/// comma-separated values it is the line of a shell that mends the file.
+std::string advice_of(const GyroscopeCheck& check, const Gyroscope& gyroscope);
 
 /// Returns why the windows of a recording show rates that no calibration can mend: a wrong unit or
 /// left-handed axes; empty if they do not.

@@ -4,7 +4,6 @@
 
 #include "engine/base/error.h"
 #include "engine/frontend/gyroscope_alignment.h"
-#include "engine/frontend/gyroscope_check.h"
 #include "engine/frontend/inliers.h"
 #include "engine/frontend/readout_compensation.h"
 #include "engine/methods/certainty/growth.h"
@@ -203,21 +202,20 @@ WindowRotations window_rotations(const Window& window,
   const GyroscopeCheck check =
       check_gyroscope_against({&by_images, 1}, gyroscope, rotations.sigma_rad);
   if (check.misfit == GyroscopeMisfit::none) return found;
-  const std::string text = text_of(check, gyroscope);
-  if (check.late_s) {
-    Gyroscope corrected = gyroscope;
-    corrected.time_offset_ns += to_ns(*check.late_s);
-    if (why_not_covered_by(corrected, window).empty()) {
-      found.chosen = choose(&corrected);
-      found.corrected = std::move(corrected);
-      found.note =
-          fmt::format("the gyroscope does not fit the images: {}, corrected in this window; {}",
-                      sentence_of(check),
-                      advice_of(check));
-      return found;
-    }
+  const std::string sentence = sentence_of(check);
+  Gyroscope corrected = gyroscope;
+  corrected.time_offset_ns += to_ns(check.late_s.value_or(0));
+  if (check.late_s && why_not_covered_by(corrected, window).empty()) {
+    found.chosen = choose(&corrected);
+    found.corrected = std::move(corrected);
+    found.note = fmt::format("the gyroscope does not fit the images: {}, corrected in this window",
+                             sentence);
+  } else {
+    found = without_gyroscope(", it does not fit the images: " + sentence);
   }
-  return without_gyroscope(", it does not fit the images: " + text);
+  found.misfit = check.misfit;
+  found.advice = advice_of(check, gyroscope);
+  return found;
 }
 
 Window with_rotations(Window window, const Rotations& rotations, const InitializeOptions& options) {

@@ -173,16 +173,16 @@ TEST(GyroscopeCheck, NamesLeftHandedAxesWhateverTheRotationToTheCamera) {
               StartsWith("it fits if its y and z axes are swapped: its axes are left-handed"));
 }
 
-TEST(GyroscopeCheck, CommandMendsTheFileOfRates) {
+TEST(GyroscopeCheck, AdviceMendsTheFileOfRates) {
   Gyroscope made = with_axes(Vector3d(1, -1, 1).asDiagonal(), with_rates(57.29578));
   made.file = "imu0/data.csv";
   const GyroscopeCheck found = check(images(), made);
   EXPECT_EQ(found.misfit, mirrored);
-  EXPECT_EQ(command_of(found, made),
-            "awk -F, -v OFS=, '/^[0-9]/ { for (i = 2; i < 5; ++i) $i *= 0.0174532925; x = $2; y = "
-            "$3; z = $4; $3 = -y; } 1' 'imu0/data.csv' > rates.csv");
+  EXPECT_EQ(advice_of(found, made),
+            "correct the rates: awk -F, -v OFS=, '/^[0-9]/ { for (i = 2; i < 5; ++i) $i *= "
+            "0.0174532925; x = $2; y = $3; z = $4; $3 = -y; } 1' 'imu0/data.csv' > rates.csv");
   made.file = "video.mp4";
-  EXPECT_EQ(command_of(found, made), "");
+  EXPECT_THAT(advice_of(found, made), HasSubstr("multiply them by 0.0174532925"));
 }
 
 TEST(GyroscopeCheck, NamesAnInvertedExtrinsicRotation) {

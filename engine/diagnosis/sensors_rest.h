@@ -24,10 +24,12 @@ struct SensorsRest {
   double most_m = std::numeric_limits<double>::infinity();
   std::vector<int> still_tracks{};  ///< columns of tracks that do not move
 
+  bool is_tilted() const;
+  bool is_too_close() const;
+  /// Returns whether the result turns, whatever moves.
+  bool is_turned() const;
   /// Returns whether the camera rests, so that the plane moves.
   bool camera_rests() const;
-  /// Returns whether result and gyroscope contradict each other, whatever moves.
-  bool contradicts() const;
 };
 
 /// Returns the evidence of a window; nullopt if a sensor is not at rest or the plane's tracks do

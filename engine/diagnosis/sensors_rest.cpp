@@ -1,6 +1,6 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/pipeline/camera_at_rest.h"
+#include "engine/diagnosis/sensors_rest.h"
 
 #include "engine/geometry/pose.h"
 #include "engine/geometry/statistics.h"
@@ -104,13 +104,14 @@ void add_rotations(const Window& window,
 
 }  // namespace
 
-bool SensorsRest::camera_rests() const {
-  return accelerometer && (!still_tracks.empty() || tilted_deg > kLeastTilt_deg + uncertain_deg ||
-                           most_m < kLeastDistance_m);
-}
+bool SensorsRest::is_tilted() const { return tilted_deg > kLeastTilt_deg + uncertain_deg; }
 
-bool SensorsRest::contradicts() const {
-  return camera_rests() || turned_deg > kLeastTurn_deg + uncertain_deg;
+bool SensorsRest::is_too_close() const { return most_m < kLeastDistance_m; }
+
+bool SensorsRest::is_turned() const { return turned_deg > kLeastTurn_deg + uncertain_deg; }
+
+bool SensorsRest::camera_rests() const {
+  return accelerometer && (!still_tracks.empty() || is_tilted() || is_too_close());
 }
 
 std::optional<SensorsRest> sensors_rest(const Window& window,
