@@ -23,7 +23,7 @@ using Eigen::Vector3d;
 // sensors are at rest, too. No window of euroc-room, cards-tracks, tags-straight, tags-mountain,
 // phone-street or a GoPro's video has sensors at rest.
 constexpr double kStill_px = 0.5;      // largest distance of a track that does not move
-constexpr double kLeastMotion_px = 5;  // of the plane's tracks
+constexpr double kLeastMotion_px = 5;  // least motion of the plane's tracks
 constexpr int kLeastStill = 10;        // posters: 35 to 62, others 0
 constexpr double kLeastStillShare = 0.05;
 constexpr double kLeastTilt_deg = 1.5;    // posters: 1.3 to 16, others up to 0.6
@@ -86,7 +86,7 @@ void add_rotations(const Window& window,
                    const SensorsAtRest& rest,
                    const std::vector<Pose>& cameras,
                    SensorsRest& found) {
-  constexpr double kUpError = 0.03;  // of a rotation, by an accelerometer's bias of 0.3 m/s^2
+  constexpr double kUpError = 0.03;  // share of a rotation: an accelerometer's bias of 0.3 m/s^2
   const Eigen::Matrix3d R_cg = gyroscope.R_gyro_camera.transpose();
   for (std::size_t i = 1; i < cameras.size(); ++i) {
     const Eigen::Matrix3d& R = cameras[i].R_wc;

@@ -33,7 +33,7 @@ constexpr double kStep_s = 0.0025, kWindow_s = kSteps * kStep_s;
 constexpr double kFarBetter = 0.35;  // scatter of the differences, relative to the recorded one
 constexpr double kExplained = 0.15;  // share of the images' own scatter
 constexpr double kLeastImages_rad_s = 0.05;
-constexpr double kMostError = 0.5;  // of the images' rotation over `kSpan_s`, share of its scatter
+constexpr double kMostError = 0.5;  // error of the images' rotations, share of their scatter
 
 Vector3d medians_of(const Matrix3Xd& all) {
   Vector3d middle;
@@ -58,7 +58,7 @@ double difference(const Pairs& pairs, const Matrix3d& R_gyro_camera) {
   return scatter_of(pairs.gyroscope - R_gyro_camera * pairs.images);
 }
 
-/// What is compared, with the rates in rad/s.
+/// Rates to compare, with the gyroscope's in rad/s.
 struct Compared {
   const RateIntegral& integral;
   const std::vector<Interval>& intervals;

@@ -23,7 +23,7 @@ enum class GyroscopeMisfit {
   hardly_rotates,  ///< the images rotate, the gyroscope does not
   scale,           ///< the rates have another size
   stabilized,      ///< the images rotate less
-  unrelated        ///< nothing fits
+  unrelated        ///< no rotation, clock or unit fits
 };
 
 /// Result of comparing the rates of a gyroscope with the rotations of images.
@@ -36,7 +36,7 @@ struct GyroscopeCheck {
   /// Between the recorded axes and those that fit; of a mirrored gyroscope, those of a rotation
   /// that fits as well, as the rates have hardly a third component. 0 if there are none.
   double apart_deg = 0;
-  double correlation = 0;  ///< of the magnitudes of the rates, -1 to 1
+  double correlation = 0;  ///< correlation of the magnitudes of the rates, -1 to 1
   /// Clock offset to add to the recorded one if only the clock is wrong [s].
   std::optional<double> late_s = std::nullopt;
 };

@@ -91,7 +91,7 @@ struct WindowRotations {
   std::optional<Gyroscope> corrected = std::nullopt;  ///< with the clock that fits the images
   bool gyroscope_is_usable = true;                    ///< false: not for gravity and scale either
   std::string note = "";                              ///< why one of these, for people
-  std::string advice = "";                            ///< what to do about it
+  std::string advice = "";                            ///< how to mend it
   GyroscopeMisfit misfit = GyroscopeMisfit::none;
 
   /// Returns the gyroscope to use in place of the given one, which may be null.

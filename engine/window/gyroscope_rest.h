@@ -24,7 +24,7 @@ struct QuietSpan {
 /// longest first. The camera may be at rest in them, or turn slowly and evenly.
 std::vector<QuietSpan> quiet_spans(const Gyroscope& gyroscope);
 
-/// What the sensors measure while they vary by their own noise only.
+/// Measurements of sensors that vary by their own noise only.
 struct SensorsAtRest {
   Eigen::Vector3d mean_rad_s;
   std::optional<Eigen::Vector3d> mean_m_s2;  ///< nullopt without an accelerometer that works

@@ -20,7 +20,7 @@ constexpr int kLeastStillFrames = 4;
 constexpr std::size_t kMostSpans = 10;  // tried, the longest first
 constexpr double kStill_px = 0.5;       // median image motion
 constexpr double kHidden_px = 0.1;      // image motion that cannot be detected
-constexpr double kStillShare = 0.15;    // of points in an image in front of which something moves
+constexpr double kStillShare = 0.15;  // share of points, if something moves in front of the camera
 constexpr std::size_t kLeastPoints = 15;
 
 std::vector<double> tracks_moved_px(const Recording& recording, int first, int second) {
@@ -55,7 +55,7 @@ std::vector<double> moved_px(const Recording& recording, int first, int second) 
                                                       : tracks_moved_px(recording, first, second);
 }
 
-/// What the images of an interval say.
+/// Motion of the images in an interval.
 struct Stillness {
   bool known = false;      ///< there are images, or tracks
   bool all = false;        ///< the images do not move

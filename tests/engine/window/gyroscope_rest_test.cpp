@@ -18,7 +18,7 @@ const Vector3d kRestBias{0.02, -0.08, 0.01}, kRestUp{0.1, -5.6, -8};
 /// Samples at 200 Hz for 2 s; the motions are added to a sensor at rest.
 struct RestOptions {
   double rate_noise = 0.003, acceleration_noise = 0.03;  ///< 0 with a motion: exact values
-  double rate_step = 0, acceleration_step = 0;           ///< of quantized values; 0: none
+  double rate_step = 0, acceleration_step = 0;           ///< step between quantized values; 0: none
   std::function<Vector3d(double t_s)> rate = [](double) { return Vector3d::Zero(); };
   std::function<Vector3d(double t_s)> acceleration = rate;
   bool accelerometer = true;
@@ -85,7 +85,7 @@ TEST(SensorsAtRest, RejectsMotionsAndVibration) {
 TEST(SensorsAtRest, BrokenSensorsDetermineNothing) {
   EXPECT_FALSE(at_rest({.rate_noise = 0}));
   const auto dead = at_rest({.acceleration_noise = 0});
-  ASSERT_TRUE(dead);  // as without an accelerometer
+  ASSERT_TRUE(dead);  // the same as without an accelerometer
   EXPECT_FALSE(dead->mean_m_s2);
   const Vector3d not_measured = Vector3d::Constant(NAN);
   EXPECT_FALSE(at_rest({.acceleration = [&](double t_s) {
