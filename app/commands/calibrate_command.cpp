@@ -6,6 +6,7 @@
 #include "engine/calibration/calibration_report.h"
 #include "engine/files/output_file.h"
 #include "engine/files/text_file.h"
+#include "engine/frontend/gyroscope_check.h"
 #include "engine/recording/board/board.h"
 #include "engine/recording/companions/companion_files.h"
 #include "ui/views/charts/charts.h"
@@ -218,6 +219,8 @@ int calibrate_gyroscope(const CalibrateArguments& arguments, const fs::path& pat
   ProgressBar bar("rotations from images");
   const auto windows = rotations_over_recording(recording, kWindows, std::ref(bar), current_stop());
   check_stop();
+  if (const std::string why = why_wrong_rates(windows, *recording->gyroscope); !why.empty())
+    return report_failure(why);
   GyroscopeFit fit = fit_gyroscope(windows, *recording->gyroscope);
   add_lens_error(fit, recording->camera);
   if (fit.windows > 0) {

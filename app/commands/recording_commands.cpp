@@ -6,6 +6,7 @@
 #include "engine/calibration/calibration_report.h"
 #include "engine/files/output_file.h"
 #include "engine/files/text_file.h"
+#include "engine/frontend/gyroscope_check.h"
 #include "engine/recording/board/board.h"
 #include "engine/recording/live/live_recording.h"
 #include "engine/synthesis/recipe.h"
@@ -51,8 +52,9 @@ std::string gyroscope_disagreement(const std::shared_ptr<const Recording>& recor
   if (!recording->images && recording->tracks.empty()) return "";
   const auto windows = rotations_over_recording(recording, kWindows, {}, current_stop());
   check_stop();
-  return why_it_does_not_fit(
-      fit_gyroscope(windows, *recording->gyroscope), *recording->gyroscope, 1 / rate_hz);
+  const Gyroscope& gyroscope = *recording->gyroscope;
+  if (const std::string why = why_wrong_rates(windows, gyroscope); !why.empty()) return why;
+  return why_it_does_not_fit(fit_gyroscope(windows, gyroscope), gyroscope, 1 / rate_hz);
 }
 
 std::shared_ptr<const Recording> open_or_print_topics(const InfoArguments& arguments,

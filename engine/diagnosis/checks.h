@@ -45,4 +45,8 @@ Findings implausible_intrinsics(const Evidence& evidence);
 // texture_checks.cpp
 Findings repeated_texture(const Evidence& evidence);
 
+// gyroscope_checks.cpp: the result against gyroscope and accelerometer.
+Findings camera_at_rest(const Evidence& evidence);
+Findings contradicted_bias(const Evidence& evidence);
+
 }  // namespace gpo::check

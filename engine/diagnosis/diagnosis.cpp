@@ -25,7 +25,7 @@ namespace {
 std::vector<Finding> remarked(const Evidence& evidence, std::string_view key) {
   std::vector<Finding> findings;
   for (const Remark& remark : evidence.remarks)
-    if (remark.key == key) findings.push_back({.sentence = remark.sentence});
+    if (remark.key == key) findings.push_back({.sentence = remark.sentence, .advice = remark.advice});
   return findings;
 }
 
@@ -57,6 +57,8 @@ std::span<const Check> checks() {
       {"truth-conventions", "The ground truth fits by another convention", Of::window, false, truth_conventions},
       {"static-tracks", "Tracks that do not move while others do", Of::window, true, static_tracks},
       {"repeated-texture", "Texture that repeats within the motion of a frame", Of::window, true, repeated_texture},
+      {"camera-at-rest", "The camera rests, the plane moves", Of::window, true, camera_at_rest},
+      {"gyroscope-bias", "The gyroscope's bias contradicts its prior", Of::result, false, contradicted_bias},
       {"rotation-only", "Rotations alone explain the images", Of::length, false, rotation_only},
       {"method-failed", "The method failed", Of::result, false, method_failed},
       {"late-clock", "The gyroscope's clock is late", Of::result, false, late_clock},
@@ -69,6 +71,7 @@ std::span<const Check> checks() {
       {"unstable-method", "The method depends on a few tracks", Of::result, true, unstable_method},
       {"guessed-camera", "The camera is a guess", Of::recording, true, guessed_camera},
       {"moving-objects", "Objects move in the scene", Of::result, true, moving_objects},
+      {"gyroscope-units", "The gyroscope's unit, hand or direction is wrong", Of::window, false, nullptr},
       {"gyroscope-misfit", "The gyroscope does not fit the images", Of::window, false, nullptr},
       {"faulty-frames", "Frames repeat, or do not show the scene", Of::window, false, nullptr},
       {"missing-plane", "The requested plane does not exist", Of::window, false, nullptr},

@@ -23,6 +23,7 @@ namespace gpo {
 struct Remark {
   std::string_view key;  ///< key of the check that reports it
   std::string sentence;
+  std::string advice = {};
 };
 
 /// Known facts about a recording, its window and the result. Null or empty: unknown.

@@ -5,13 +5,11 @@
 #include "engine/geometry/decompositions.h"
 #include "engine/geometry/pose.h"
 #include "engine/geometry/statistics.h"
-#include "engine/window/timestamps.h"
 
 #include <algorithm>
 #include <cmath>
 
 #include <Eigen/LU>
-#include <fmt/format.h>
 
 namespace gpo {
 namespace {
@@ -22,115 +20,6 @@ using Eigen::Vector3d;
 constexpr double kMostOffset_s = 1;
 constexpr double kOffsetStep_s = 0.005;
 constexpr double kKneeInMedians = 2;  // knee of Huber's loss, in medians
-
-/// Wahba's problem by singular values (Markley 1988), reweighted.
-GyroAlignment align(const Pairs& pairs) {
-  const auto& [gyroscope, images] = pairs;
-  GyroAlignment result;
-  if (images.cols() < std::ptrdiff_t{kLeastIntervals}) return result;
-  Eigen::ArrayXd weights = Eigen::ArrayXd::Ones(images.cols());
-  for (int round = 0; round < 6; ++round) {
-    const Eigen::VectorXd shares = weights / weights.sum();
-    const Vector3d mean_g = gyroscope * shares, mean_p = images * shares;
-    result.R = nearest_rotation((gyroscope.colwise() - mean_g) * weights.matrix().asDiagonal() *
-                                (images.colwise() - mean_p).transpose());
-    result.bias = mean_g - result.R * mean_p;
-    const Matrix3Xd errors = (gyroscope - result.R * images).colwise() - result.bias;
-    const Eigen::ArrayXd e = errors.colwise().norm().transpose();
-    const double knee = std::max(1e-6, kKneeInMedians * median({e.begin(), e.end()}));
-    weights = (e < knee).select(1.0, knee / e);
-    result.cost = (e < knee).select(0.5 * e.square(), knee * (e - 0.5 * knee)).mean();
-  }
-  return result;
-}
-
-Vector3d medians_of(const Matrix3Xd& all) {
-  Vector3d middle;
-  for (int axis = 0; axis < 3; ++axis) {
-    const auto row = all.row(axis);
-    middle[axis] = median({row.begin(), row.end()});
-  }
-  return middle;
-}
-
-/// Median distance of columns from their median [rad/s].
-double scatter_of(const Matrix3Xd& all) {
-  const Eigen::RowVectorXd norms = (all.colwise() - medians_of(all)).colwise().norm();
-  return median({norms.begin(), norms.end()});
-}
-
-double difference(const Pairs& pairs, const Eigen::Matrix3d& R_gyro_camera) {
-  return scatter_of(pairs.gyroscope - R_gyro_camera * pairs.images);
-}
-
-constexpr double kSpan_s = 0.1;  // images determine rates over it far better than over frames
-constexpr int kSteps = 80;       // offsets of the clock that are tried, in both directions
-constexpr double kStep_s = 0.0025, kWindow_s = kSteps * kStep_s;
-constexpr double kFarBetter = 0.35;  // scatter of the differences, relative to the recorded one
-
-/// Scatter of the differences by the best other clock and by the best other axes [rad/s].
-struct Alternatives {
-  double by_clock, by_axes;
-  double late_s = 0, apart_deg = 0;
-};
-
-Alternatives alternatives_to(double recorded,
-                             const RateIntegral& integral,
-                             const std::vector<Interval>& intervals,
-                             const GyroAlignment& given) {
-  Alternatives best{recorded, recorded};
-  const auto covered = pairs_at(integral, intervals, given.offset_s).images.cols();
-  for (int step = -kSteps; step <= kSteps; ++step) {
-    const double shift_s = step * kStep_s;
-    const Pairs pairs = pairs_at(integral, intervals, given.offset_s + shift_s);
-    if (pairs.images.cols() < covered) continue;
-    if (const double one = difference(pairs, given.R); one < best.by_clock) {
-      best.by_clock = one;
-      best.late_s = shift_s;
-    }
-    const Eigen::Matrix3d R = align(pairs).R;
-    if (const double one = difference(pairs, R); one < best.by_axes) {
-      best.by_axes = one;
-      best.apart_deg = degrees(so3_log(R.transpose() * given.R).norm());
-    }
-  }
-  return best;
-}
-
-/// Returns how the sizes of the rates contradict each other; empty if they do not.
-std::string misfit_of_size(const Pairs& now,
-                           const Eigen::Matrix3d& R_gyro_camera,
-                           double by_clock,
-                           double sigma_rad) {
-  constexpr double kUnexplained = 0.75;  // by the recorded axes, share of the larger scatter
-  constexpr double kStabilized = 0.55;   // scatter of the images, share of the gyroscope's
-  constexpr double kLeastRotation_rad_s = 0.15;
-  // In 140 windows of real recordings, a gyroscope that fits has a share of 0.5 and more, or the
-  // images' error is 0.8 of their rotation and more.
-  constexpr double kHardly = 0.25;  // scatter of the gyroscope, share of the images'
-  constexpr double kHalf = 0.62, kBetter = 0.5;
-  constexpr double kLeastImages_rad_s = 0.05, kMostError = 0.5;
-  const double of_images = scatter_of(now.images), of_gyroscope = scatter_of(now.gyroscope);
-  const double share = of_gyroscope / of_images;
-  const bool images_rotate = of_images > kLeastImages_rad_s;
-  if (images_rotate && share < kHardly && sigma_rad < kMostError * kSpan_s * of_images)
-    return "the images rotate, but it hardly does";
-  if (images_rotate && share < kHalf &&
-      difference({now.gyroscope / share, now.images}, R_gyro_camera) < kBetter * by_clock)
-    return fmt::format("its rates are about {:.2f} of those of the images", share);
-  if (of_gyroscope <= kLeastRotation_rad_s) return "";
-  if (of_images < kStabilized * of_gyroscope && by_clock > kStabilized * of_gyroscope)
-    return "the images rotate less than it does, as stabilized images do";
-  if (by_clock < kUnexplained * std::max(of_images, of_gyroscope)) return "";
-  return fmt::format("their rates have a correlation of {:.2f}", correlation_of(now));
-}
-
-/// Returns rates over 0.1 s or a frame, whichever is longer; they overlap.
-std::vector<Interval> long_intervals_of(const ImageRotations& window) {
-  const double period_s = 1e-9 * static_cast<double>(median_period_ns(window.timestamps_ns));
-  const auto span = static_cast<std::size_t>(std::max(1L, std::lround(kSpan_s / period_s)));
-  return intervals_of({window}, span);
-}
 
 }  // namespace
 
@@ -214,6 +103,26 @@ double correlation_of(const Pairs& pairs) {
   return (x * y).sum() / std::sqrt(std::max(1e-300, x.square().sum() * y.square().sum()));
 }
 
+GyroAlignment aligned(const Pairs& pairs) {
+  const auto& [gyroscope, images] = pairs;
+  GyroAlignment result;
+  if (images.cols() < std::ptrdiff_t{kLeastIntervals}) return result;
+  Eigen::ArrayXd weights = Eigen::ArrayXd::Ones(images.cols());
+  for (int round = 0; round < 6; ++round) {
+    const Eigen::VectorXd shares = weights / weights.sum();
+    const Vector3d mean_g = gyroscope * shares, mean_p = images * shares;
+    result.R = nearest_rotation((gyroscope.colwise() - mean_g) * weights.matrix().asDiagonal() *
+                                (images.colwise() - mean_p).transpose());
+    result.bias = mean_g - result.R * mean_p;
+    const Matrix3Xd errors = (gyroscope - result.R * images).colwise() - result.bias;
+    const Eigen::ArrayXd e = errors.colwise().norm().transpose();
+    const double knee = std::max(1e-6, kKneeInMedians * median({e.begin(), e.end()}));
+    weights = (e < knee).select(1.0, knee / e);
+    result.cost = (e < knee).select(0.5 * e.square(), knee * (e - 0.5 * knee)).mean();
+  }
+  return result;
+}
+
 std::optional<GyroAlignment> best_alignment(const RateIntegral& integral,
                                             const std::vector<Interval>& intervals,
                                             double around_s) {
@@ -223,43 +132,12 @@ std::optional<GyroAlignment> best_alignment(const RateIntegral& integral,
     const double offset_s = around_s + k * kOffsetStep_s;
     const Pairs pairs = pairs_at(integral, intervals, offset_s);
     if (2 * pairs.images.cols() < std::ssize(intervals)) continue;
-    GyroAlignment alignment = align(pairs);
+    GyroAlignment alignment = aligned(pairs);
     alignment.offset_s = offset_s;
     if (!best || alignment.cost < best->cost) best = alignment;
   }
   if (best && !std::isfinite(best->cost)) return std::nullopt;
   return best;
-}
-
-GyroscopeCheck check_gyroscope_against(const ImageRotations& window,
-                                       const Gyroscope& gyroscope,
-                                       double sigma_rad) {
-  constexpr double kLeast_rad_s = 0.001;  // smaller differences are noise of the images
-  constexpr double kExplained = 0.15;     // share of the images' own scatter
-  constexpr double kLeastAxes_deg = 20;
-  if (window.R_wc.size() <= kLeastIntervals) return {};
-  const std::vector<Interval> intervals = long_intervals_of(window);
-  const std::int64_t margin_ns = to_ns(kWindow_s + 0.1);
-  const Gyroscope samples =
-      samples_between(gyroscope,
-                      window.timestamps_ns.front() + gyroscope.time_offset_ns - margin_ns,
-                      window.timestamps_ns.back() + gyroscope.time_offset_ns + margin_ns);
-  if (intervals.size() < kLeastIntervals || samples.timestamps_ns.size() < 2) return {};
-  const RateIntegral integral(samples);
-  const double recorded_s = 1e-9 * static_cast<double>(gyroscope.time_offset_ns);
-  const Pairs now = pairs_at(integral, intervals, recorded_s);
-  if (now.images.cols() < std::ptrdiff_t{kLeastIntervals}) return {};
-  const double recorded = difference(now, gyroscope.R_gyro_camera);
-  if (recorded < kLeast_rad_s) return {};
-  const Alternatives other =
-      alternatives_to(recorded, integral, intervals, {gyroscope.R_gyro_camera, {}, recorded_s});
-  if (other.by_axes < std::min(kFarBetter * other.by_clock, kExplained * scatter_of(now.images)) &&
-      other.apart_deg > kLeastAxes_deg)
-    return {fmt::format("its axes are about {:.0f} deg off", other.apart_deg)};
-  const double half_frame_s = 0.5e-9 * static_cast<double>(median_period_ns(window.timestamps_ns));
-  if (other.by_clock < kFarBetter * recorded && std::abs(other.late_s) > half_frame_s)
-    return {fmt::format("its clock is about {:+.0f} ms off", 1e3 * other.late_s), other.late_s};
-  return {misfit_of_size(now, gyroscope.R_gyro_camera, other.by_clock, sigma_rad)};
 }
 
 }  // namespace gpo

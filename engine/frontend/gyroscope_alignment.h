@@ -7,7 +7,6 @@
 #include <cstdint>
 #include <limits>
 #include <optional>
-#include <string>
 #include <vector>
 
 #include <Eigen/Core>
@@ -69,24 +68,13 @@ struct GyroAlignment {
 
 inline constexpr std::size_t kLeastIntervals = 12;
 
+/// Solves Wahba's problem by singular values (Markley 1988), reweighted. The cost of fewer than
+/// `kLeastIntervals` pairs is infinite.
+GyroAlignment aligned(const Pairs& pairs);
+
 /// The best alignment on a grid of offsets that cover half of the intervals; nullopt if none does.
 std::optional<GyroAlignment> best_alignment(const RateIntegral& integral,
                                             const std::vector<Interval>& intervals,
                                             double around_s);
-
-/// Result of comparing the rates of a gyroscope with the rotations of a window's images.
-struct GyroscopeCheck {
-  std::string misfit;  ///< description for people; empty if they agree or if it is unknown
-  /// Clock offset to add to the recorded one if only the clock is wrong [s].
-  std::optional<double> late_s = std::nullopt;
-};
-
-/// Compares the rates with those of the images, for the recorded axes and clock, for other clocks
-/// (within 0.2 s) and for other axes. A misfit is reported if another clock (off by more than half
-/// a frame) or other axes fit far better, if the gyroscope rotates far less than the images, or if
-/// nothing explains the images. `sigma_rad` is the rough error of the images' rotations.
-GyroscopeCheck check_gyroscope_against(const ImageRotations& window,
-                                       const Gyroscope& gyroscope,
-                                       double sigma_rad);
 
 }  // namespace gpo

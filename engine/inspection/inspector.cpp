@@ -311,7 +311,11 @@ struct Inspector::Stages {
     const auto add = [&](std::string_view key, std::string sentence) {
       if (!sentence.empty()) remarks.push_back({key, std::move(sentence)});
     };
-    add("gyroscope-misfit", rotations.value.note);
+    const auto& [chosen, corrected, usable, note, advice, misfit] = rotations.value;
+    using enum GyroscopeMisfit;
+    const bool named = misfit == unit || misfit == mirrored || misfit == inverted;
+    if (!note.empty())
+      remarks.push_back({named ? "gyroscope-units" : "gyroscope-misfit", note, advice});
     add("faulty-frames", frames_note(settings));
     if (const auto missing = missing_plane(window, settings.options); !missing.empty())
       add("missing-plane", fmt::format("{}; plane {} leads", missing, window.leader + 1));

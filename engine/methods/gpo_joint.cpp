@@ -15,8 +15,6 @@
 #include <cmath>
 #include <limits>
 
-#include <fmt/format.h>
-
 namespace gpo {
 namespace {
 
@@ -28,10 +26,6 @@ constexpr Rounds kStartRounds{2};  // for candidate starts
 constexpr double kWorthFreeRotations = 1.25;
 /// The same after one round of reweighting.
 constexpr double kMayBeWorth = 1.1;
-
-/// Largest plausible gyroscope bias, absolute and relative to its prior.
-constexpr double kMostBias_rad_s = 0.5;
-constexpr double kMostBiasSigmas = 6;
 
 /// Returns the window with the gyroscope's rotations before its calibration from the images, which
 /// may have selected the wrong one of a plane's two decompositions. nullopt without one.
@@ -45,22 +39,6 @@ std::optional<Window> with_prior_bias(const Window& window) {
   for (int i = 0; i < window.frame_count(); ++i)
     raw.R_wc[i] = window.R_wc[i] * so3_exp(gyro_correction_rad(window, i, prior));
   return raw;
-}
-
-/// Returns why the estimated bias of the gyroscope shows a wrong minimum; empty if it does not.
-std::string why_implausible_bias(const Window& window, const PlaneMotion& motion) {
-  if (window.rotations != RotationModel::bias) return "";
-  const GyroSensitivity& gyro = *window.gyro;
-  const double bias_rad_s = motion.bias_rad_s.norm();
-  if (bias_rad_s > kMostBias_rad_s)
-    return fmt::format("wrong minimum: estimated gyroscope bias {:.2f} rad/s", bias_rad_s);
-  const double sigmas = (motion.bias_rad_s - gyro.prior_rad_s).norm() / gyro.prior_sigma_rad_s;
-  if (sigmas < kMostBiasSigmas) return "";
-  return fmt::format(
-      "wrong minimum: estimated gyroscope bias {:.3f} rad/s, {:.0f} standard deviations from its "
-      "prior",
-      bias_rad_s,
-      sigmas);
 }
 
 /// Compares a fit with free rotations, in which the gyroscope no longer selects one of the plane's
@@ -263,8 +241,6 @@ Initialization initialize_gpo_joint(const Window& window,
   if (solver.termination != Termination::convergence) return not_converged(solver);
   if (fit.rotations.model == RotationModel::bias) bias_rad_s = fit.solution.motion.bias_rad_s;
   Initialization result = make_result(fit.window, fit.solution.motion, solver);
-  if (const std::string wrong = why_implausible_bias(window, fit.solution.motion); !wrong.empty())
-    return refused(wrong, std::move(result));
   if (!result.ok) return result;
   const PlaneMotion motion = facing(fit.window, fit.solution.motion);
   result.uncertainty =

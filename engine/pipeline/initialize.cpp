@@ -270,7 +270,8 @@ WindowResult initialize(const Camera& camera,
   WindowResult result;
   result.rotations = chosen.source;
   const bool lacks_samples = gyroscope != nullptr && gyro == nullptr && R_wc.empty();
-  result.rotations_note = joined(lacks_samples ? kNoSamples : rotations.note, chosen.note);
+  result.rotations_note =
+      joined(lacks_samples ? kNoSamples : joined(rotations.note, rotations.advice), chosen.note);
   result.window = with_rotations(std::move(window), chosen.rotations, options);
   gyro = rotations.usable(gyro);
   const Sources sources{&camera, gyro, body_camera_of(gyro, options)};

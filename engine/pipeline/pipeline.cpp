@@ -202,24 +202,24 @@ WindowRotations window_rotations(const Window& window,
   WindowRotations found{choose(&gyroscope)};
   const Rotations& rotations = found.chosen.rotations;
   if (requested != automatic || rotations.R_wc_images.empty()) return found;
-  const auto [misfit, late_s] = check_gyroscope_against(
-      {window.timestamps_ns, rotations.R_wc_images}, gyroscope, rotations.sigma_rad);
-  if (misfit.empty()) return found;
-  constexpr const char* kAdvice = "run `calibrate --gyroscope`";
-  if (late_s) {
-    Gyroscope corrected = gyroscope;
-    corrected.time_offset_ns += to_ns(*late_s);
-    if (why_not_covered_by(corrected, window).empty()) {
-      found.chosen = choose(&corrected);
-      found.corrected = std::move(corrected);
-      found.note =
-          fmt::format("the gyroscope does not fit the images: {}, corrected in this window; {}",
-                      misfit,
-                      kAdvice);
-      return found;
-    }
+  const ImageRotations by_images{window.timestamps_ns, rotations.R_wc_images};
+  const GyroscopeCheck check =
+      check_gyroscope_against({&by_images, 1}, gyroscope, rotations.sigma_rad);
+  if (check.misfit == GyroscopeMisfit::none) return found;
+  const std::string sentence = sentence_of(check);
+  Gyroscope corrected = gyroscope;
+  corrected.time_offset_ns += to_ns(check.late_s.value_or(0));
+  if (check.late_s && why_not_covered_by(corrected, window).empty()) {
+    found.chosen = choose(&corrected);
+    found.corrected = std::move(corrected);
+    found.note = fmt::format("the gyroscope does not fit the images: {}, corrected in this window",
+                             sentence);
+  } else {
+    found = without_gyroscope(", it does not fit the images: " + sentence);
   }
-  return without_gyroscope(fmt::format(", it does not fit the images: {}; {}", misfit, kAdvice));
+  found.misfit = check.misfit;
+  found.advice = advice_of(check, gyroscope);
+  return found;
 }
 
 Window with_rotations(Window window, const Rotations& rotations, const InitializeOptions& options) {

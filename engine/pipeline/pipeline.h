@@ -3,6 +3,7 @@
 #pragma once
 
 #include "engine/diagnosis/diagnosis.h"
+#include "engine/frontend/gyroscope_check.h"
 #include "engine/frontend/inliers.h"
 #include "engine/frontend/rotations.h"
 #include "engine/inertial/inertial_alignment.h"
@@ -90,6 +91,8 @@ struct WindowRotations {
   std::optional<Gyroscope> corrected = std::nullopt;  ///< with the clock that fits the images
   bool gyroscope_is_usable = true;                    ///< false: not for gravity and scale either
   std::string note = "";                              ///< why one of these, for people
+  std::string advice = "";                            ///< how to mend it
+  GyroscopeMisfit misfit = GyroscopeMisfit::none;
 
   /// Returns the gyroscope to use in place of the given one, which may be null.
   const Gyroscope* usable(const Gyroscope* given) const;

@@ -108,5 +108,41 @@ TEST(SensorCases, ALateClockOfTheImuIsCorrectedAndTheScaleHolds) {
   EXPECT_LT(std::abs(error_percent), 3);
 }
 
+TEST(SensorCases, APosterThatMovesBeforeACameraAtRestIsNoPlane) {
+  const fs::path tripod = case_folder("tripod-moving-poster");
+  SKIP_WITHOUT(tripod);
+  const fs::path file = fresh_folder() / "result.json";
+  for (const char* window : {"--frames 16", "--frames 10 --start 5", "--frames 16 --method gpo"}) {
+    program("run {} {} --json {}", tripod, window, file);
+    const auto result = read_json(file);
+    EXPECT_EQ(result.at("verdict").at("readiness"), "degenerate") << window;
+    const std::string reason = result.at("verdict").at("reason");
+    EXPECT_THAT(reason, HasSubstr("the camera rests, the plane moves")) << window;
+    EXPECT_THAT(reason, Not(HasSubstr("longer camera path"))) << window;
+  }
+}
+
+TEST(SensorCases, RatesInDegreesAndLeftHandedAxesAreNamed) {
+  const fs::path given = case_folder("gyroscope-units-and-hands");
+  SKIP_WITHOUT(given);
+  const fs::path folder = fresh_folder(), left = folder / "left";
+  fs::copy(given, left, fs::copy_options::recursive);
+  fs::permissions(left / "mav0/imu0/data.csv", fs::perms::owner_write, fs::perm_options::add);
+  fs::copy_file(given / "left-handed-data.csv",
+                left / "mav0/imu0/data.csv",
+                fs::copy_options::overwrite_existing);
+  const std::pair<fs::path, const char*> faults[] = {{given, "as in degrees per second"},
+                                                     {left, "it fits if its y axis is negated"}};
+  for (const auto& [recording, fault] : faults) {
+    EXPECT_THAT(program("info {}", recording).out, HasSubstr(fault));
+    for (const char* frames : {"10", "16", "20"})
+      EXPECT_THAT(program("run {} --frames {}", recording, frames).out, HasSubstr(fault)) << frames;
+    expect_exit(
+        1, program("calibrate {} --gyroscope --output {}/c.yaml", recording, folder), fault);
+    EXPECT_FALSE(fs::exists(folder / "c.yaml"));
+  }
+  EXPECT_THAT(program("info {}", given).out, HasSubstr("revolutions per second"));
+}
+
 }  // namespace
 }  // namespace gpo::test

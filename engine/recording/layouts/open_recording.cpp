@@ -4,12 +4,16 @@
 
 #include "engine/files/refuse.h"
 #include "engine/files/text_file.h"
+#include "engine/geometry/statistics.h"
 #include "engine/recording/board/board.h"
 #include "engine/recording/companions/companion_files.h"
 #include "engine/recording/images/images.h"
+#include "engine/window/gyroscope_rest.h"
 
 #include <algorithm>
+#include <cmath>
 #include <exception>
+#include <numbers>
 #include <tuple>
 #include <utility>
 
@@ -114,16 +118,49 @@ void add_sidecars(Recording& recording, const Found& found) {
     recording.plane = Plane{{0, 0, -1}, 0};
 }
 
+/// A file's bias is kept, unless the interval contradicts it.
 void set_bias_from_stationary_interval(Recording& recording) {
-  if (!recording.gyroscope || recording.gyroscope->bias_known) return;
+  if (!recording.gyroscope) return;
   const auto rest = find_stationary_interval(recording);
   if (!rest) return;
   Gyroscope& gyroscope = *recording.gyroscope;
+  if (gyroscope.bias_known) {
+    const double apart_rad_s = (gyroscope.bias_rad_s - rest->mean_rad_s).norm();
+    const double sigma_rad_s = std::hypot(held_bias_sigma_rad_s(gyroscope), rest->sigma_rad_s);
+    if (apart_rad_s <= kMostBiasSigmas * sigma_rad_s) {
+      if (gyroscope.bias_sigma_rad_s == kUnknownBiasSigma_rad_s)
+        gyroscope.bias_sigma_rad_s = std::hypot(apart_rad_s, rest->sigma_rad_s);
+      return;
+    }
+    recording.notes.push_back(
+        fmt::format("the gyroscope's bias by {} is {:.3f} rad/s off that of a stationary interval "
+                    "of {:.1f} s, which is used",
+                    gyroscope.bias_source,
+                    apart_rad_s,
+                    1e-9 * static_cast<double>(rest->last_ns - rest->first_ns)));
+  }
+  gyroscope.bias_known = false;
   gyroscope.bias_rad_s = rest->mean_rad_s;
   gyroscope.bias_sigma_rad_s = rest->sigma_rad_s;
   gyroscope.bias_source = fmt::format("stationary for {:.1f} s, uncertainty {:.4f} rad/s",
                                       1e-9 * static_cast<double>(rest->last_ns - rest->first_ns),
                                       rest->sigma_rad_s);
+}
+
+/// Returns why the rates cannot be in rad/s: no camera turns by more than a revolution per second
+/// most of the time. The medians of real recordings are 0.1 to 1 rad/s. Empty if they can.
+std::string why_implausible_rates(const Gyroscope& gyroscope) {
+  constexpr double kMost_rad_s = 2 * std::numbers::pi;
+  std::vector<double> sizes;
+  for (const Eigen::Vector3d& rate : gyroscope.rates_rad_s) sizes.push_back(rate.norm());
+  if (sizes.empty()) return "";
+  const double middle = median(std::move(sizes));
+  if (middle < kMost_rad_s) return "";
+  return fmt::format(
+      "the gyroscope's rates have a median of {:.0f} rad/s, {:.1f} revolutions per second: they "
+      "may be in another unit, as degrees per second",
+      middle,
+      middle / (2 * std::numbers::pi));
 }
 
 void add_notes(Recording& recording) {
@@ -151,6 +188,8 @@ void add_notes(Recording& recording) {
                                   counted(count, what)));
   };
   if (const auto& gyroscope = recording.gyroscope) {
+    if (std::string why = why_implausible_rates(*gyroscope); !why.empty())
+      notes.push_back(std::move(why));
     const fs::path& file = gyroscope->file;
     note_left_out(
         gyroscope->left_out, "sample", (file.parent_path().filename() / file.filename()).string());

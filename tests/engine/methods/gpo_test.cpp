@@ -171,20 +171,6 @@ TEST(GpoJoint, ReportsWrongMinima) {
   EXPECT_GT(solved, 495);
 }
 
-TEST(GpoJoint, RejectsImplausibleBias) {
-  const Simulation truth =
-      simulate_fitted({.motion = Motion::wander, .gyro_bias_rad_s = 0.15, .seed = 2});
-  const Initialization result =
-      initialize_gpo_joint(truth.window, {.shutter = Shutter::global}, {});
-  if (result.uncertainty && result.uncertainty->rotations == RotationModel::free) return;
-  EXPECT_FALSE(result.ok);
-  EXPECT_THAT(result.reason, HasSubstr("standard deviations from its prior"));
-  ASSERT_TRUE(result.refused);  // for display
-  EXPECT_TRUE(result.cameras.empty());
-  EXPECT_EQ(std::ssize(result.refused->cameras), truth.window.frame_count());
-  EXPECT_NEAR(result.refused->plane.normal.norm(), 1, 1e-12);
-}
-
 TEST(GpoJoint, EqualsGpoForKnownRotations) {
   const Simulation truth = simulate_fitted({.motion = Motion::orbit});
   const Initialization joint =

@@ -111,6 +111,8 @@ TEST(StationaryInterval, EstimatesTheBias) {
     EXPECT_NEAR(1e-9 * static_cast<double>(rest->last_ns - rest->first_ns), 2, 0.3);
     EXPECT_LT(largest(rest->mean_rad_s - kBias), 4 * rest->sigma_rad_s);
     EXPECT_LT(rest->sigma_rad_s, 1e-3);
+    EXPECT_LT((rest->mean_rad_s - kBias).norm(), 0.001);
+    EXPECT_NEAR(rest->sigma_rad_s, 0.002, 0.0005);  // the bias changes
   }
 }
 
@@ -118,7 +120,8 @@ TEST(StationaryInterval, IsMissingIfImagesMoveRatesVaryOrItIsShort) {
   // On a turntable the constant rate is not the bias.
   EXPECT_FALSE(find_stationary_interval(made({.images_px_per_s = 10})));
   EXPECT_FALSE(find_stationary_interval(made({.noise_rad_s = 0.05})));
-  EXPECT_FALSE(find_stationary_interval(made({.stationary_s = 0.5})));
+  EXPECT_TRUE(find_stationary_interval(made({.stationary_s = 0.6})));
+  EXPECT_FALSE(find_stationary_interval(made({.stationary_s = 0.3})));
   Recording without_gyroscope = made({});
   without_gyroscope.gyroscope.reset();
   EXPECT_FALSE(find_stationary_interval(without_gyroscope));
