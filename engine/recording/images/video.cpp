@@ -10,6 +10,7 @@
 #include <array>
 #include <cmath>
 #include <functional>
+#include <iterator>
 
 namespace gpo {
 namespace {
@@ -49,6 +50,17 @@ double pixel_aspect_of(const AVStream& stream) {
   return aspect >= 1 / kMost && aspect <= kMost ? aspect : 1;
 }
 
+/// Returns whether the video may be interlaced: its stream says so, or says nothing. No interlaced
+/// format has more rows than 1080, and encoders of these codecs have none.
+bool may_be_interlaced(const AVCodecParameters& codec) {
+  constexpr int kMostRows = 1088;
+  constexpr std::array kProgressive = {
+      AV_CODEC_ID_HEVC, AV_CODEC_ID_VP8, AV_CODEC_ID_VP9, AV_CODEC_ID_AV1};
+  if (codec.height > kMostRows || codec.field_order == AV_FIELD_PROGRESSIVE) return false;
+  return codec.field_order != AV_FIELD_UNKNOWN ||
+         std::ranges::find(kProgressive, codec.codec_id) == kProgressive.end();
+}
+
 /// Returns whether frames are missing because the file was truncated.
 bool is_truncated(const fs::path& file, const VideoIndex& index) {
   const double found = static_cast<double>(index.times.size()) + index.hidden_count;
@@ -68,6 +80,9 @@ std::vector<std::string> notes_of(const VideoIndex& index) {
   std::vector<std::string> notes;
   if (index.mirrored)
     notes.emplace_back("players mirror this video: its images are read as stored");
+  if (index.fields)
+    notes.push_back(fmt::format("interlaced, {} field first: the first field is used",
+                                *index.fields == FieldOrder::top_first ? "top" : "bottom"));
   if (index.damaged.empty()) return notes;
   const std::int64_t first =
       std::max<std::int64_t>(0, std::ranges::min(index.damaged) - index.times.front());
@@ -125,9 +140,10 @@ struct VideoDecoder::Input {
     return true;
   }
 
-  cv::Mat image(const fs::path& file) {
+  cv::Mat image(const fs::path& file, std::optional<FieldOrder> fields) {
     cv::Mat bgr = convert(*frame);
     if (bgr.empty()) fail_to_open(file);
+    if (fields) bgr = first_field(bgr, *fields);
     const int turns = orientation_of(*stream).quarter_turns;
     if (turns > 0) cv::rotate(bgr, bgr, turns - 1);
     return bgr;
@@ -149,7 +165,42 @@ VideoDecoder::VideoDecoder(fs::path file, const ReadProgress& progress, int firs
   if (std::isfinite(rate)) index_.rate_hz = rate;
   index_.declared_count = declared_count(*input_->format, stream);
   index_.estimated_count = stream.nb_frames <= 0;
+  const bool checked = may_be_interlaced(*stream.codecpar);
   if (!index_packets(progress, first_frames)) count_frames(progress);
+  restart();
+  if (checked) find_fields();
+}
+
+/// Decides by the motion at some places of the video: progressive ones are often declared as
+/// interlaced, and interlaced ones not.
+void VideoDecoder::find_fields() {
+  constexpr int kPlaces = 6, kMostSteps = 48;  // steps from a key frame
+  const bool timed = numbering_ == Numbering::by_time;
+  const int most = static_cast<int>(index_.times.size()) - 2;
+  std::vector<double> motions;
+  try {
+    for (int place = 0; place < kPlaces && most >= 0; ++place) {
+      int frame = static_cast<int>(std::int64_t{most} * place / (kPlaces - 1));
+      if (timed) {
+        const auto key = std::ranges::upper_bound(index_.key_times, index_.times[frame]);
+        const auto whole = key == index_.key_times.begin()
+                               ? index_.times.begin()
+                               : std::ranges::lower_bound(index_.times, *std::prev(key));
+        const int first = static_cast<int>(whole - index_.times.begin());
+        frame = std::min(frame, first + kMostSteps);
+      } else {
+        frame = std::min(frame, place * kMostSteps);
+      }
+      cv::Mat images[] = {decode(frame), decode(frame + 1)};
+      for (cv::Mat& image : images)
+        if (index_.quarter_turns > 0) cv::rotate(image, image, 3 - index_.quarter_turns);
+      std::ranges::copy(field_motions(images[0], images[1]), std::back_inserter(motions));
+    }
+  } catch (const InputError&) {
+    motions.clear();  // opening or reading the images reports broken ones
+  }
+  index_.fields = field_order(motions);
+  kept_.clear();
   restart();
 }
 
@@ -299,7 +350,7 @@ cv::Mat VideoDecoder::decode(int frame) {
       refuse(file_, "frame {} cannot be decoded", frame);
     }
     if (decoded < first_kept) continue;
-    cv::Mat image = input_->image(file_);
+    cv::Mat image = input_->image(file_, index_.fields);
     if (decoded == frame) return image;
     kept_[decoded] = std::move(image);
   }
