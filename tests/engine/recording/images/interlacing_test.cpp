@@ -51,6 +51,9 @@ VideoFile open(const std::filesystem::path& file,
   return open_video(file, camera, 1 << 24);
 }
 
+/// What coding costs; rows of the other field would differ by more than 20.
+constexpr double kMostError = 8;
+
 /// RMS difference of the images to what the scene is at the frames' times.
 double error_of(const VideoFile& video, int frame) {
   const cv::Mat expected = scene(frame), found = video.images->bgr(frame);
@@ -65,7 +68,8 @@ TEST(Interlacing, FirstFieldsAreUsedWithoutADeclaration) {
     for (const char* name : {"a.avi", "a.mov"}) {
       const VideoFile video = open(folder.path() / name, filmed(scan));
       EXPECT_THAT(video.notes, ElementsAre(note)) << name;
-      for (const int frame : {0, 7, kFrames - 1}) EXPECT_LT(error_of(video, frame), 4) << frame;
+      for (const int frame : {0, 7, kFrames - 1})
+        EXPECT_LT(error_of(video, frame), kMostError) << frame;
     }
 }
 
@@ -86,7 +90,7 @@ TEST(Interlacing, ProgressiveImagesStayWholeWhateverIsDeclared) {
   for (const bool top_first : {true, false}) {
     const VideoFile video = open(folder.path() / "a.ts", images, {.top_field_first = top_first});
     EXPECT_THAT(video.notes, IsEmpty());
-    EXPECT_LT(error_of(video, 7), 4);
+    EXPECT_LT(error_of(video, 7), kMostError);
   }
   EXPECT_THAT(open(folder.path() / "a.avi", images).notes, IsEmpty());
 }
@@ -106,7 +110,7 @@ TEST(Interlacing, FieldsAreThoseOfTheStoredImageOfARotatedVideo) {
     cv::Mat stored;
     cv::rotate(video.images->bgr(7), stored, 3 - degrees / 90);
     const cv::Rect inner(8, 8, 144, 112);
-    EXPECT_LT(cv::norm(stored(inner), scene(7)(inner)) / std::sqrt(3.0 * inner.area()), 4);
+    EXPECT_LT(cv::norm(stored(inner), scene(7)(inner)) / std::sqrt(3.0 * inner.area()), kMostError);
   }
 }
 
