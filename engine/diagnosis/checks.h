@@ -32,5 +32,6 @@ Findings unstable_method(const Evidence& evidence);
 // input_checks.cpp: camera, gyroscope and what readers and stages remarked.
 Findings guessed_camera(const Evidence& evidence);
 Findings implausible_intrinsics(const Evidence& evidence);
+Findings interlaced(const Evidence& evidence);
 
 }  // namespace gpo::check

@@ -63,6 +63,7 @@ std::span<const Check> checks() {
       {"uncertain-normal", "The plane's normal is uncertain", Of::length, false, uncertain_normal},
       {"unstable-method", "The method depends on a few tracks", Of::result, true, unstable_method},
       {"guessed-camera", "The camera is a guess", Of::recording, true, guessed_camera},
+      {"interlaced", "The video is interlaced", Of::recording, false, interlaced},
       {"gyroscope-misfit", "The gyroscope does not fit the images", Of::window, false, nullptr},
       {"faulty-frames", "Frames repeat, or do not show the scene", Of::window, false, nullptr},
       {"missing-plane", "The requested plane does not exist", Of::window, false, nullptr},

@@ -187,6 +187,7 @@ struct VideoFile {
   double first_frame_s = 0;        ///< according to the container
   int quarter_turns = 0;           ///< clockwise rotation from the stored to the shown images
   double pixel_aspect = 1;         ///< width of a pixel divided by its height
+  std::string first_field;         ///< see `Recording::first_field`
   std::vector<std::string> notes;  ///< see `Recording::notes`
   bool complete = true;            ///< false: only the first frames
 };

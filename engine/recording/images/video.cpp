@@ -80,9 +80,6 @@ std::vector<std::string> notes_of(const VideoIndex& index) {
   std::vector<std::string> notes;
   if (index.mirrored)
     notes.emplace_back("players mirror this video: its images are read as stored");
-  if (index.fields)
-    notes.push_back(fmt::format("interlaced, {} field first: the first field is used",
-                                *index.fields == FieldOrder::top_first ? "top" : "bottom"));
   if (index.damaged.empty()) return notes;
   const std::int64_t first =
       std::max<std::int64_t>(0, std::ranges::min(index.damaged) - index.times.front());
@@ -394,6 +391,9 @@ VideoFile open_video(const fs::path& file,
           .first_frame_s = static_cast<double>(index.times.front()) * index.unit_s,
           .quarter_turns = index.quarter_turns,
           .pixel_aspect = index.pixel_aspect,
+          .first_field = !index.fields                            ? ""
+                         : *index.fields == FieldOrder::top_first ? "top"
+                                                                  : "bottom",
           .notes = notes_of(index),
           .complete = index.complete};
 }
