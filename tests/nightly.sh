@@ -7,6 +7,7 @@
 #   tests/nightly.sh            runs all parts
 #   tests/nightly.sh PART...    runs these parts in this order
 # Parts:
+#   clone       ./test.sh in a clone of the last commit with nothing beside it, as a new user has it
 #   fuzz        builds tests/fuzz under libFuzzer and mutates the inputs of each parser
 #   asan        all tests with the address and undefined-behavior sanitizers
 #   tsan        the tests that start threads, with the thread sanitizer
@@ -29,7 +30,7 @@ set -uo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 source .ci/install.sh
 export JOBS=${JOBS:-$(nproc)} LIBGL_ALWAYS_SOFTWARE=1 GALLIUM_DRIVER=llvmpipe
-all=(nine monkey first-steps hostile kills interrupts browser fuzz asan tsan gcc flags exports headers arm64 packages)
+all=(clone nine monkey first-steps hostile kills interrupts browser fuzz asan tsan gcc flags exports headers arm64 packages)
 logs=$PWD/build/nightly
 kSkipped=77
 
@@ -45,6 +46,16 @@ build_ci() {
 mutations="answer 100000  bag 15000  calibration 50000  experiment 25000  library 1500  logs 50000  message 100000  picture 100000
   poses 100000  recipe 30000  recording 2500  results 75000  script 25000  session 50000  sidecars 50000  tables 150000
   video 10000"
+
+# Uncommitted changes are not tested.
+clone() {
+  git rev-parse --verify -q HEAD || skip "these sources are not a git repository"
+  local folder status=0
+  folder=$(mktemp -d) && git clone --depth 1 "file://$PWD" "$folder/gpo-inspector" || return 1
+  "$folder/gpo-inspector/test.sh" || status=$?
+  rm -rf "$folder"
+  return "$status"
+}
 
 fuzz() {
   install_packages "${build_packages[@]}" "${sanitizer_packages[@]}"

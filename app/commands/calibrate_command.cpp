@@ -77,9 +77,13 @@ Board board_of_options(const CalibrateArguments& arguments) {
   return board;
 }
 
+fs::path folder_of_images(const fs::path& recording) {
+  return fs::is_directory(recording) ? recording : recording.parent_path();
+}
+
 Board board_of(const CalibrateArguments& arguments, const fs::path& recording) {
   if (arguments.board) return board_of_options(arguments);
-  const fs::path folder = fs::is_directory(recording) ? recording : recording.parent_path();
+  const fs::path folder = folder_of_images(recording);
   for (const fs::path& base : {folder, folder / "mav0"}) {
     const fs::path file = base / "board.yaml";
     if (!fs::exists(file)) continue;
@@ -129,18 +133,34 @@ int report_failure(const std::string& reason) {
   return kFailed;
 }
 
-/// The recording's camera.yaml may be calibrated again, but no other file of it is overwritten.
+/// With its own camera.yaml as output, the recording's camera is only compared.
 void check_not_of(const Recording& recording, const CalibrateArguments& arguments) {
   check_not_overwritten(recording, {{"--figure", arguments.figure}});
   if (arguments.output.filename() != "camera.yaml")
     check_not_overwritten(recording, {{"--output", arguments.output}});
 }
 
-template <class Calibration>
-int write_camera(const CalibrateArguments& arguments, const Calibration& calibration) {
-  fmt::print("{}", to_text(calibration));
-  write_output(arguments.output, to_yaml(calibration, arguments.recording.filename().string()));
+/// Writes a camera.yaml, but not over that of the recording.
+int write_camera(const CalibrateArguments& arguments,
+                 const Recording* recording,
+                 const std::string& yaml) {
+  if (recording == nullptr || !is_read_from(*recording, arguments.output))
+    write_output(arguments.output, yaml);
+  else
+    fmt::print("{} is not replaced; choose another --output to write the new one\n",
+               arguments.output.string());
   return kDone;
+}
+
+template <class Calibration>
+int report(const CalibrateArguments& arguments,
+           const Recording* recording,
+           const Calibration& calibration) {
+  fmt::print("{}", to_text(calibration));
+  if (recording != nullptr && recording->camera_source != CameraSource::guess)
+    fmt::print("{}", comparison_text(calibration.camera, recording->camera));
+  return write_camera(
+      arguments, recording, to_yaml(calibration, arguments.recording.filename().string()));
 }
 
 int calibrate_by_plane(const CalibrateArguments& arguments, const fs::path& recording) {
@@ -151,7 +171,7 @@ int calibrate_by_plane(const CalibrateArguments& arguments, const fs::path& reco
   check_not_of(*opened, arguments);
   const PlaneLens calibration = self_calibrate(*opened);
   if (!calibration.ok) return report_failure(calibration.reason);
-  return write_camera(arguments, calibration);
+  return report(arguments, opened.get(), calibration);
 }
 
 /// Returns null if the recording cannot be opened, for example because its calibration is of
@@ -165,6 +185,14 @@ std::shared_ptr<const Recording> opened_or_null(const CalibrateArguments& argume
   }
 }
 
+/// Throws InputError if the output exists beside images that cannot be opened with it.
+void check_new(const fs::path& output, const fs::path& folder) {
+  std::error_code none;
+  if (fs::exists(output, none) && fs::equivalent(folder_of(output), folder, none))
+    throw InputError(fmt::format(
+        "{}: does not fit the images; remove it, or choose another --output", output.string()));
+}
+
 int calibrate_by_board(const CalibrateArguments& arguments, const fs::path& recording) {
   constexpr int kMaxFrames = 600;
   CalibrationOptions options = options_of(arguments);
@@ -172,7 +200,9 @@ int calibrate_by_board(const CalibrateArguments& arguments, const fs::path& reco
   warn_of_large_square(board.square_m);
   const auto images = open_images(recording, kCacheBytes, arguments.topics);
   std::vector<std::int64_t> times_ns;
-  if (const auto opened = opened_or_null(arguments, recording)) {
+  const auto opened = opened_or_null(arguments, recording);
+  if (!opened) check_new(arguments.output, folder_of_images(recording));
+  if (opened) {
     check_not_of(*opened, arguments);
     times_ns = opened->timestamps_ns;
     options.readout = opened->camera.readout;
@@ -182,7 +212,7 @@ int calibrate_by_board(const CalibrateArguments& arguments, const fs::path& reco
   const auto search = find_calibration_views(*images, board, kMaxFrames, std::ref(bar), times_ns);
   const CameraCalibration calibration = calibrate_camera(search, board, options);
   if (!calibration.ok) return report_failure(calibration.reason);
-  return write_camera(arguments, calibration);
+  return report(arguments, opened.get(), calibration);
 }
 
 void write_rate_figure(const fs::path& file,
@@ -228,9 +258,9 @@ int calibrate_gyroscope(const CalibrateArguments& arguments, const fs::path& pat
     if (arguments.figure) write_rate_figure(*arguments.figure, windows, *recording, fit);
   }
   if (!fit.ok) return report_failure(fit.reason);
-  write_output(arguments.output,
-               to_yaml(fit, recording->camera, recording->name, lever_arm_m(*recording)));
-  return kDone;
+  return write_camera(arguments,
+                      recording.get(),
+                      to_yaml(fit, recording->camera, recording->name, lever_arm_m(*recording)));
 }
 
 int calibrate_as_requested(const CalibrateArguments& arguments) {
@@ -293,7 +323,11 @@ RunCommand add_calibrate(CLI::App& app) {
   command.add_option("--figure", to->figure, "Plot the angular rates before and after (.png)")
       ->needs(gyroscope);
   add_topics(command, to->topics);
-  command.add_option("--output", to->output, "camera.yaml to write")->required();
+  command
+      .add_option("--output",
+                  to->output,
+                  "camera.yaml to write; that of the recording is compared, not replaced")
+      ->required();
   command.callback([&command, to] {
     for (const char* name : {"--square", "--pattern", "--marker", "--dictionary"})
       if (command.count(name) > 0) to->board_details.emplace_back(name);

@@ -297,6 +297,38 @@ std::string why_it_does_not_fit(const GyroscopeFit& fit,
                      fmt::join(wrong, ", "));
 }
 
+std::string comparison_text(const Camera& found, const Camera& recorded) {
+  std::string text = "compared with the recording's calibration:\n";
+  const auto names = parameter_names(found);
+  const auto now = parameters(found), before = parameters(recorded);
+  const bool same_model = found.distortion == recorded.distortion;
+  const std::size_t count = same_model ? std::min(now.size(), before.size()) : 4;
+  const auto sigma_of = [](const Camera& camera, std::size_t k) {
+    return k < camera.sigmas.size() ? camera.sigmas[k] : 0;
+  };
+  for (std::size_t k = 0; k < count; ++k) {
+    const int digits = k < 4 ? 2 : 5;
+    const double known = sigma_of(recorded, k), sigma = std::hypot(sigma_of(found, k), known);
+    text += row(names[k].c_str(),
+                "{:10.{}f}, recorded {:.{}f}{}: {:+.{}f}{} ({})",
+                now[k],
+                digits,
+                before[k],
+                digits,
+                known > 0 ? fmt::format(" +- {:.{}f}", known, digits) : "",
+                now[k] - before[k],
+                digits,
+                k < 4 ? " px" : "",
+                sigma > 0 ? fmt::format("{:+.1f} sigma", (now[k] - before[k]) / sigma)
+                          : "no standard deviation");
+  }
+  if (!same_model)
+    text += fmt::format("The lens models differ ({}, recorded {}), so are the coefficients\n",
+                        lens_model(found.distortion).name,
+                        lens_model(recorded.distortion).name);
+  return text;
+}
+
 std::vector<Chart> gyroscope_charts(const std::vector<ImageRotations>& windows,
                                     const Gyroscope& gyroscope,
                                     const GyroscopeFit& fit) {

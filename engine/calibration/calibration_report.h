@@ -25,6 +25,10 @@ std::string to_text(const CameraCalibration& calibration);
 std::string to_text(const PlaneLens& lens);
 std::string to_text(const GyroscopeFit& fit, const Gyroscope& recorded);
 
+/// Formats the differences of a camera from that of the recording, one parameter a line, with the
+/// standard deviations of both.
+std::string comparison_text(const Camera& found, const Camera& recorded);
+
 /// Angular rates over time in camera axes, by images and by the gyroscope before and after the fit,
 /// and their differences.
 std::vector<Chart> gyroscope_charts(const std::vector<ImageRotations>& windows,

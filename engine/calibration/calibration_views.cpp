@@ -105,6 +105,7 @@ std::optional<Feature> feature_of(const CalibrationView& view,
     from.emplace_back(point.x(), point.y());
     to.emplace_back(view.corners[i].x() / diagonal, view.corners[i].y() / diagonal);
   }
+  if (from.size() < 4) return std::nullopt;
   const cv::Mat found = cv::findHomography(from, to);
   if (found.empty()) return std::nullopt;
   const cv::Matx33d H = cv::Matx33d(found) * (1 / found.at<double>(2, 2));

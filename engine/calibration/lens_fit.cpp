@@ -9,6 +9,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
+#include <utility>
 
 #include <opencv2/calib3d.hpp>
 
@@ -99,6 +101,16 @@ struct CvSolution {
   std::vector<cv::Mat> rotations, translations;
 };
 
+void add_residuals(LensFit& fit,
+                   const std::vector<cv::Point2f>& pixels,
+                   const std::vector<cv::Point2f>& projected) {
+  auto& view = fit.residuals_px.emplace_back(4, std::ssize(pixels));
+  for (Eigen::Index i = 0; i < view.cols(); ++i) {
+    const cv::Point2f error = pixels[i] - projected[i];
+    view.col(i) << pixels[i].x, pixels[i].y, error.x, error.y;
+  }
+}
+
 /// OpenCV's object releasing method (Strobl and Hirzinger 2011); `columns` of corners.
 LensFit fit_radial_tangential(const Correspondences& seen, const LensStart& start, int columns) {
   LensFit fit;
@@ -126,6 +138,16 @@ LensFit fit_radial_tangential(const Correspondences& seen, const LensStart& star
                                      kConverged);
   if (start.bent) fit.bend_m = bend_of(points);
   solution.take(fit);
+  for (std::size_t i = 0; i < seen.pixels.size(); ++i) {
+    std::vector<cv::Point2f> projected;
+    cv::projectPoints(start.bent ? points : cv::Mat(seen.points[i]),
+                      solution.rotations[i],
+                      solution.translations[i],
+                      solution.K,
+                      solution.coefficients,
+                      projected);
+    add_residuals(fit, seen.pixels[i], projected);
+  }
   for (std::size_t i = 0; start.with_sigmas && i < 4 + fit.camera.coefficients.size(); ++i)
     fit.sigmas.push_back(sigmas.at<double>(static_cast<int>(i)));
   return fit;
@@ -136,8 +158,8 @@ LensFit fit_equidistant(const Correspondences& seen, const LensStart& start) {
   fit.camera = start.camera;
   CvSolution solution(start.camera);
   auto& [K, coefficients, rotations, translations] = solution;
-  int flags = cv::fisheye::CALIB_RECOMPUTE_EXTRINSIC | cv::fisheye::CALIB_FIX_SKEW;
-  if (start.known) flags |= cv::fisheye::CALIB_USE_INTRINSIC_GUESS;
+  const int flags = cv::fisheye::CALIB_RECOMPUTE_EXTRINSIC | cv::fisheye::CALIB_FIX_SKEW |
+                    cv::fisheye::CALIB_USE_INTRINSIC_GUESS;
   fit.rms_px = cv::fisheye::calibrate(seen.points,
                                       seen.pixels,
                                       {start.camera.width, start.camera.height},
@@ -152,18 +174,46 @@ LensFit fit_equidistant(const Correspondences& seen, const LensStart& start) {
     std::vector<cv::Point2f> projected;
     cv::fisheye::projectPoints(
         seen.points[i], projected, rotations[i], translations[i], K, coefficients);
+    add_residuals(fit, seen.pixels[i], projected);
     const double norm = cv::norm(projected, seen.pixels[i]);
     fit.view_rms_px.push_back(norm / std::sqrt(static_cast<double>(projected.size())));
   }
   return fit;
 }
 
-bool plausible(const Camera& camera) {
+bool plausible(const LensFit& fit) {
+  const Camera& camera = fit.camera;
   const double largest = 20.0 * std::max(camera.width, camera.height);
   const auto all = parameters(camera);
-  return std::ranges::all_of(all, [](double p) { return std::isfinite(p); }) && camera.fx > 0 &&
-         camera.fy > 0 && camera.fx < largest && camera.fy < largest && camera.cx > 0 &&
-         camera.cx < camera.width && camera.cy > 0 && camera.cy < camera.height;
+  return std::ranges::all_of(all, [](double p) { return std::isfinite(p); }) &&
+         std::isfinite(fit.rms_px) && camera.fx > 0 && camera.fy > 0 && camera.fx < largest &&
+         camera.fy < largest && camera.cx > 0 && camera.cx < camera.width && camera.cy > 0 &&
+         camera.cy < camera.height;
+}
+
+/// OpenCV's fit of an equidistant lens does not leave a start that is too far away: with its own
+/// start, a fisheye of 180 degrees, that of a lens of 70 degrees stays there at 100 px RMS.
+std::vector<LensStart> starts_of(const LensStart& start) {
+  if (start.known || start.camera.distortion != Distortion::equidistant) return {start};
+  std::vector<LensStart> starts;
+  for (const double share : {1 / std::numbers::pi, 0.5, 1.0, 2.0}) {
+    LensStart& next = starts.emplace_back(start);
+    next.camera.fx = next.camera.fy = share * std::max(start.camera.width, start.camera.height);
+  }
+  return starts;
+}
+
+/// Returns nullopt if the views do not determine a camera.
+std::optional<LensFit> fit_from(const LensStart& start, const Correspondences& seen, int columns) {
+  try {
+    LensFit solution = start.camera.distortion == Distortion::equidistant
+                           ? fit_equidistant(seen, start)
+                           : fit_radial_tangential(seen, start, columns);
+    if (plausible(solution)) return solution;
+  } catch (const cv::Exception&) {
+    return std::nullopt;
+  }
+  return std::nullopt;
 }
 
 }  // namespace
@@ -200,16 +250,13 @@ std::optional<LensFit> fit_lens(const std::vector<CalibrationView>& views,
                                 const Board& board,
                                 const LensStart& start) {
   check_stop();
-  try {
-    const Correspondences seen = correspondences(views, board, start);
-    LensFit solution = start.camera.distortion == Distortion::equidistant
-                           ? fit_equidistant(seen, start)
-                           : fit_radial_tangential(seen, start, board.columns);
-    if (plausible(solution.camera)) return solution;
-  } catch (const cv::Exception&) {
-    // The views do not determine a camera.
+  const Correspondences seen = correspondences(views, board, start);
+  std::optional<LensFit> best;
+  for (const LensStart& one : starts_of(start)) {
+    auto fit = fit_from(one, seen, board.columns);
+    if (fit && (!best || fit->rms_px < best->rms_px)) best = std::move(fit);
   }
-  return std::nullopt;
+  return best;
 }
 
 }  // namespace gpo

@@ -53,15 +53,18 @@ struct LensFit {
   double rms_px = 0;
   std::vector<double> sigmas;       ///< empty if not computed
   std::vector<double> view_rms_px;  ///< one per view
-  std::vector<double> slant_deg;    ///< one per view
-  double bend_m = 0;                ///< largest distance of a bent board's corners from a plane
+  /// One per view, for each seen corner a column: its place, and its distance from the projection
+  /// [px].
+  std::vector<Eigen::Matrix4Xd> residuals_px;
+  std::vector<double> slant_deg;  ///< one per view
+  double bend_m = 0;              ///< largest distance of a bent board's corners from a plane
 };
 
 /// True if the views determine how a board bends: all corners in all views, no equidistant lens.
 bool bend_is_observable(const std::vector<CalibrationView>& views, Distortion distortion);
 
-/// Minimizes the reprojection errors of the corners in all views; nullopt if the result is not
-/// plausible.
+/// Minimizes the reprojection errors of the corners in all views, from several focal lengths if no
+/// solution is known and the lens is equidistant; nullopt if no result is plausible.
 std::optional<LensFit> fit_lens(const std::vector<CalibrationView>& views,
                                 const Board& board,
                                 const LensStart& start);

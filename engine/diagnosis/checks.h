@@ -41,6 +41,7 @@ Findings moving_objects(const Evidence& evidence);
 // input_checks.cpp: camera, gyroscope and what readers and stages remarked.
 Findings guessed_camera(const Evidence& evidence);
 Findings implausible_intrinsics(const Evidence& evidence);
+Findings interlaced(const Evidence& evidence);
 
 // texture_checks.cpp
 Findings repeated_texture(const Evidence& evidence);

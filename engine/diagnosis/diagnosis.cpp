@@ -72,6 +72,7 @@ std::span<const Check> checks() {
       {"guessed-camera", "The camera is a guess", Of::recording, true, guessed_camera},
       {"moving-objects", "Objects move in the scene", Of::result, true, moving_objects},
       {"gyroscope-units", "The gyroscope's unit, hand or direction is wrong", Of::window, false, nullptr},
+      {"interlaced", "The video is interlaced", Of::recording, false, interlaced},
       {"gyroscope-misfit", "The gyroscope does not fit the images", Of::window, false, nullptr},
       {"faulty-frames", "Frames repeat, or do not show the scene", Of::window, false, nullptr},
       {"missing-plane", "The requested plane does not exist", Of::window, false, nullptr},

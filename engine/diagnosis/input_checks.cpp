@@ -53,6 +53,12 @@ Findings guessed_camera(const Evidence& e) {
   return e.camera_is_guess ? weak("the camera is a guess", "calibrate it") : Findings{};
 }
 
+Findings interlaced(const Evidence& e) {
+  if (e.first_field.empty()) return {};
+  return {{.sentence =
+               fmt::format("interlaced, {} field first: the first field is used", e.first_field)}};
+}
+
 Findings implausible_intrinsics(const Evidence& e) {
   if (e.camera == nullptr || e.camera_is_guess || e.camera->width < 1 || e.camera->height < 1)
     return {};

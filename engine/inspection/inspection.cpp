@@ -306,6 +306,7 @@ Evidence evidence_of(const Recording& recording) {
   return {.camera = &recording.camera,
           .camera_is_guess = recording.camera_source == CameraSource::guess,
           .pixel_aspect = recording.pixel_aspect,
+          .first_field = recording.first_field,
           .gyroscope = recording.gyroscope ? &*recording.gyroscope : nullptr};
 }
 

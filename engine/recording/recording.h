@@ -61,6 +61,8 @@ struct Recording {
   Camera camera;
   CameraSource camera_source = CameraSource::file;
   double pixel_aspect = 1;  ///< width of a pixel divided by its height, as a video states it
+  /// "top" or "bottom" if its video is interlaced, of which the images are the first fields.
+  std::string first_field;
   std::optional<Pose> T_body_camera;        ///< body: the axes of the IMU; nullopt if unknown
   std::vector<std::int64_t> timestamps_ns;  ///< times of the frames, strictly ascending
   bool complete = true;  ///< false: the first frames of a long video, to be shown while it is read

@@ -63,6 +63,20 @@ TEST(CalibrateCommand, CalibratesFromAChessboard) {
   // Now it is a recording, with ground truth from board.yaml.
   write_file(folder / "in/board.yaml", kBoardFile);
   EXPECT_THAT(succeeding("info {}", folder / "in").out, HasSubstr("uncertainty"));
+  // Its camera.yaml is compared, not replaced.
+  const std::string before = read_file(output);
+  const Outcome again =
+      succeeding("calibrate {} --coefficients 5 --output {}", folder / "in", output);
+  EXPECT_THAT(again.out,
+              testing::AllOf(HasSubstr("compared with the recording's calibration:"),
+                             HasSubstr(" sigma)"),
+                             HasSubstr("is not replaced; choose another --output")));
+  EXPECT_EQ(read_file(output), before);
+  // One of another size, with which the images cannot be opened, stays, too.
+  write_file(output, "resolution: [64, 48]\nintrinsics: [50, 50, 32, 24]\n");
+  expect_refused(program("calibrate {} --output {}", folder / "in", output),
+                 "does not fit the images; remove it, or choose another --output");
+  write_file(output, before);
   // The board is read from board.yaml.
   succeeding("calibrate {} --coefficients 5 --output {}", folder / "in", folder / "again.yaml");
   EXPECT_EQ(numbers_of(folder / "again.yaml", "distortion_coefficients").size(), 5U);
@@ -96,6 +110,49 @@ TEST(CalibrateCommand, UndeterminedCoefficientsStayZero) {
   EXPECT_EQ(found.coefficients.back(), 0);
   for (const double k : found.coefficients) EXPECT_LT(std::abs(k), 10);
   EXPECT_NEAR(found.fx, 500, 20);
+}
+
+TEST(CalibrateCommand, ComparesWithTheRecordingAndWritesElsewhere) {
+  const fs::path output = fresh_folder() / "camera.yaml";
+  const Outcome outcome = succeeding("calibrate {} --output {}", kDesk, output);
+  EXPECT_THAT(outcome.out, HasSubstr(", recorded 498.20: "));
+  EXPECT_THAT(outcome.out, testing::Not(HasSubstr("is not replaced")));
+  EXPECT_NEAR(read_calibration(output).camera.fx, 498.2, 5);
+}
+
+TEST(CalibrateCommand, CalibratesOrRefusesAWideLens) {
+  const fs::path folder = fresh_folder();
+  struct Case {
+    const char* name;
+    const char* options;
+    double fx;  ///< 0: refused
+  };
+  for (const auto& [name, options, fx] :
+       {Case{"wide-lens-board", "--model equidistant", 281.85},
+        Case{"wide-lens-board", "--coefficients 8", 281.85},
+        Case{"wide-lens-board", "--coefficients 5", 0},
+        Case{"wide-lens-board", "", 0},
+        Case{"calibrate-success-at-148px", "--model equidistant", 507.3},
+        Case{"calibrate-success-at-148px", "", 507.3}}) {
+    SCOPED_TRACE(fmt::format("{} {}", name, options));
+    const fs::path images = shared(fmt::format("cases/{}", name)), output = folder / "camera.yaml";
+    SKIP_WITHOUT(images);
+    fs::remove(output);
+    const Outcome outcome =
+        program("calibrate {} --board 8x6 --square 0.025 {} --output {}", images, options, output);
+    if (fx == 0) {
+      expect_exit(1, outcome, "calibration failed: ");
+      EXPECT_THAT(outcome.out, HasSubstr("try --model equidistant or --coefficients 8"));
+      EXPECT_FALSE(fs::exists(output));
+      continue;
+    }
+    ASSERT_EQ(outcome.exit_code, 0) << outcome.out << outcome.err;
+    const double sigma = numbers_of(output, "intrinsics_sigma")[0];
+    const double found = read_calibration(output).camera.fx;
+    EXPECT_GT(sigma, 0);
+    EXPECT_LT(std::abs(found - fx), 3 * sigma) << found << " +- " << sigma;
+    EXPECT_NEAR(found, fx, 0.004 * fx);
+  }
 }
 
 TEST(CalibrateCommand, FindsTheOrientationOfTheGyroscope) {

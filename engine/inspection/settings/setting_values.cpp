@@ -139,7 +139,8 @@ std::string why_change_is_idle(const std::string& key,
   if (key == "time_offset" &&
       (no_gyroscope || (rotations != RotationSource::automatic && !needs_gyroscope(rotations))))
     return "The rotations are not from a gyroscope";
-  if (key == "lens" && recording != nullptr && lens_root(recording->camera).cols() > 0)
+  // Standard deviations of 0 state the exact lens that the change requests.
+  if (key == "lens" && recording != nullptr && !lens_root(recording->camera).isZero(0))
     return "The calibration states its standard deviations";
   if (key == "accelerometer_bias_sigma" && options.gravity == Gravity::off)
     return "Gravity is not estimated";

@@ -4,6 +4,7 @@
 
 #include "engine/files/output_file.h"
 #include "engine/files/text_file.h"
+#include "engine/recording/images/interlacing.h"
 #include "engine/recording/recording.h"
 
 #include <string_view>
@@ -128,7 +129,9 @@ struct VideoIndex {
   double rate_hz = 0;                 ///< average according to the container; 0 if unknown
   int quarter_turns = 0;              ///< clockwise rotation from the stored to the shown image
   bool mirrored = false;  ///< whether players also mirror the image; the decoder does not
-  bool complete = true;   ///< false: `times` are only the first ones
+  /// Of interlaced videos, of which the decoder returns the first fields; nullopt if progressive.
+  std::optional<FieldOrder> fields = std::nullopt;
+  bool complete = true;  ///< false: `times` are only the first ones
 };
 
 /// Decodes frames of a video file in any order, with the same result as decoding the whole file
@@ -164,6 +167,7 @@ class VideoDecoder {
   PacketTimes read_packets(const ReadProgress& progress, int first_frames);
   void count_frames(const ReadProgress& progress);
   void drop_undecodable();
+  void find_fields();
   int next_frame();
   int go_to(int frame);
   void restart();
@@ -183,6 +187,7 @@ struct VideoFile {
   double first_frame_s = 0;        ///< according to the container
   int quarter_turns = 0;           ///< clockwise rotation from the stored to the shown images
   double pixel_aspect = 1;         ///< width of a pixel divided by its height
+  std::string first_field;         ///< see `Recording::first_field`
   std::vector<std::string> notes;  ///< see `Recording::notes`
   bool complete = true;            ///< false: only the first frames
 };

@@ -10,6 +10,7 @@
 #include <array>
 #include <cmath>
 #include <functional>
+#include <iterator>
 
 namespace gpo {
 namespace {
@@ -47,6 +48,17 @@ double pixel_aspect_of(const AVStream& stream) {
   const double aspect =
       av_q2d(of_container.num > 0 ? of_container : stream.codecpar->sample_aspect_ratio);
   return aspect >= 1 / kMost && aspect <= kMost ? aspect : 1;
+}
+
+/// Returns whether the video may be interlaced: its stream says so, or says nothing. No interlaced
+/// format has more rows than 1080, and encoders of these codecs have none.
+bool may_be_interlaced(const AVCodecParameters& codec) {
+  constexpr int kMostRows = 1088;
+  constexpr std::array kProgressive = {
+      AV_CODEC_ID_HEVC, AV_CODEC_ID_VP8, AV_CODEC_ID_VP9, AV_CODEC_ID_AV1};
+  if (codec.height > kMostRows || codec.field_order == AV_FIELD_PROGRESSIVE) return false;
+  return codec.field_order != AV_FIELD_UNKNOWN ||
+         std::ranges::find(kProgressive, codec.codec_id) == kProgressive.end();
 }
 
 /// Returns whether frames are missing because the file was truncated.
@@ -125,9 +137,10 @@ struct VideoDecoder::Input {
     return true;
   }
 
-  cv::Mat image(const fs::path& file) {
+  cv::Mat image(const fs::path& file, std::optional<FieldOrder> fields) {
     cv::Mat bgr = convert(*frame);
     if (bgr.empty()) fail_to_open(file);
+    if (fields) bgr = first_field(bgr, *fields);
     const int turns = orientation_of(*stream).quarter_turns;
     if (turns > 0) cv::rotate(bgr, bgr, turns - 1);
     return bgr;
@@ -149,7 +162,42 @@ VideoDecoder::VideoDecoder(fs::path file, const ReadProgress& progress, int firs
   if (std::isfinite(rate)) index_.rate_hz = rate;
   index_.declared_count = declared_count(*input_->format, stream);
   index_.estimated_count = stream.nb_frames <= 0;
+  const bool checked = may_be_interlaced(*stream.codecpar);
   if (!index_packets(progress, first_frames)) count_frames(progress);
+  restart();
+  if (checked) find_fields();
+}
+
+/// Decides by the motion at some places of the video: progressive ones are often declared as
+/// interlaced, and interlaced ones not.
+void VideoDecoder::find_fields() {
+  constexpr int kPlaces = 6, kMostSteps = 48;  // steps from a key frame
+  const bool timed = numbering_ == Numbering::by_time;
+  const int most = static_cast<int>(index_.times.size()) - 2;
+  std::vector<double> motions;
+  try {
+    for (int place = 0; place < kPlaces && most >= 0; ++place) {
+      int frame = static_cast<int>(std::int64_t{most} * place / (kPlaces - 1));
+      if (timed) {
+        const auto key = std::ranges::upper_bound(index_.key_times, index_.times[frame]);
+        const auto whole = key == index_.key_times.begin()
+                               ? index_.times.begin()
+                               : std::ranges::lower_bound(index_.times, *std::prev(key));
+        const int first = static_cast<int>(whole - index_.times.begin());
+        frame = std::min(frame, first + kMostSteps);
+      } else {
+        frame = std::min(frame, place * kMostSteps);
+      }
+      cv::Mat images[] = {decode(frame), decode(frame + 1)};
+      for (cv::Mat& image : images)
+        if (index_.quarter_turns > 0) cv::rotate(image, image, 3 - index_.quarter_turns);
+      std::ranges::copy(field_motions(images[0], images[1]), std::back_inserter(motions));
+    }
+  } catch (const InputError&) {
+    motions.clear();  // opening or reading the images reports broken ones
+  }
+  index_.fields = field_order(motions);
+  kept_.clear();
   restart();
 }
 
@@ -299,7 +347,7 @@ cv::Mat VideoDecoder::decode(int frame) {
       refuse(file_, "frame {} cannot be decoded", frame);
     }
     if (decoded < first_kept) continue;
-    cv::Mat image = input_->image(file_);
+    cv::Mat image = input_->image(file_, index_.fields);
     if (decoded == frame) return image;
     kept_[decoded] = std::move(image);
   }
@@ -343,6 +391,9 @@ VideoFile open_video(const fs::path& file,
           .first_frame_s = static_cast<double>(index.times.front()) * index.unit_s,
           .quarter_turns = index.quarter_turns,
           .pixel_aspect = index.pixel_aspect,
+          .first_field = !index.fields                            ? ""
+                         : *index.fields == FieldOrder::top_first ? "top"
+                                                                  : "bottom",
           .notes = notes_of(index),
           .complete = index.complete};
 }

@@ -237,6 +237,7 @@ Recording read_images(const fs::path& path, const OpenOptions& options) {
                         alone ? options.first_frames : 0);
     recording.complete = opened.complete;
     recording.pixel_aspect = opened.pixel_aspect;
+    recording.first_field = opened.first_field;
     recording.images = opened.images;
     recording.image_files = {*video};
     recording.notes.insert(recording.notes.end(), opened.notes.begin(), opened.notes.end());

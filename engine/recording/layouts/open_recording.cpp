@@ -233,12 +233,16 @@ std::shared_ptr<const Recording> open_recording(const fs::path& path, const Open
   return std::make_shared<const Recording>(std::move(recording));
 }
 
-void check_not_overwritten(const Recording& recording, const fs::path& output) {
+bool is_read_from(const Recording& recording, const fs::path& file) {
   std::error_code none;
-  if (!fs::exists(output, none)) return;
-  const auto is_output = [&](const fs::path& file) { return fs::equivalent(file, output, none); };
-  if (std::ranges::any_of(recording.read_files, is_output) ||
-      std::ranges::any_of(recording.image_files, is_output))
+  if (!fs::exists(file, none)) return false;
+  const auto is_it = [&](const fs::path& other) { return fs::equivalent(other, file, none); };
+  return std::ranges::any_of(recording.read_files, is_it) ||
+         std::ranges::any_of(recording.image_files, is_it);
+}
+
+void check_not_overwritten(const Recording& recording, const fs::path& output) {
+  if (is_read_from(recording, output))
     refuse(output, "belongs to the recording and would be overwritten; choose another file");
 }
 

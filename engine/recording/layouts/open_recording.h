@@ -88,6 +88,8 @@ void add_data_set_truth(Recording& recording, const fs::path& folder);
 std::shared_ptr<const Recording> open_recording(const fs::path& path,
                                                 const OpenOptions& options = {});
 
+/// Returns whether the recording was read from this file.
+bool is_read_from(const Recording& recording, const fs::path& file);
 /// Throws InputError if the recording was read from this file, so that it would be lost.
 void check_not_overwritten(const Recording& recording, const fs::path& output);
 

@@ -3,12 +3,14 @@
 #include "engine/calibration/calibrate.h"
 
 #include "engine/calibration/calibration_report.h"
+#include "engine/calibration/residual_structure.h"
 #include "engine/recording/companions/companion_files.h"
 #include "tests/engine/calibration/phone_and_board.h"
 #include "tests/engine/frontend/texture.h"
 #include "tests/engine/recording/board/rendered_board.h"
 #include "tests/engine/test_folder.h"
 
+#include <limits>
 #include <memory>
 #include <random>
 #include <stdexcept>
@@ -186,6 +188,111 @@ TEST(Calibrate, ExplainsFailures) {
   // From straight above a longer lens at a larger distance sees the same.
   const auto frontal = calibrate_camera(simulated({.slant_deg = 1}), kBoard);
   EXPECT_TRUE(!frontal.ok && !frontal.reason.empty());
+}
+
+TEST(Calibrate, RefusesALensModelThatDoesNotDescribeTheLens) {
+  const auto wrong = calibrate_camera(
+      simulated({.camera = wide(), .count = 40, .distance = 0.2}), kBoard, {.coefficients = 4});
+  EXPECT_FALSE(wrong.ok);
+  EXPECT_THAT(wrong.reason,
+              testing::AllOf(HasSubstr("depend on the place in the image"),
+                             HasSubstr("try --model equidistant or --coefficients 8")));
+  // The residuals of bent paper, too, are not noise; the equidistant model cannot bend it.
+  const auto bent = calibrate_camera(
+      simulated({.count = 40, .rise_m = 0.003}), kBoard, {.distortion = Distortion::equidistant});
+  EXPECT_FALSE(bent.ok);
+  EXPECT_THAT(bent.reason, HasSubstr("check that the board is flat"));
+}
+
+TEST(Calibrate, RefusesALargeReprojectionError) {
+  for (const double noise_px : {1.0, 2.0}) {
+    BoardSearch search = simulated({.count = 40});
+    std::mt19937 random(7);
+    std::normal_distribution<double> noise(0, noise_px);
+    for (auto& view : search.views)
+      for (auto& corner : view.corners) corner += Vector2d(noise(random), noise(random));
+    const auto found = calibrate_camera(search, kBoard);
+    EXPECT_EQ(found.ok, noise_px == 1) << found.reason;
+    if (!found.ok) EXPECT_THAT(found.reason, HasSubstr("the reprojection error is 2."));
+  }
+}
+
+TEST(Calibrate, FindsLensesOfAllFieldsOfViewByTheEquidistantModel) {
+  for (const double f : {200.0, 300.0, 500.0, 800.0}) {
+    Camera camera = wide();
+    camera.fx = camera.fy = f;
+    const auto found = calibrated(simulated({.camera = camera, .count = 12, .distance = f / 1500}),
+                                  {.distortion = Distortion::equidistant});
+    EXPECT_LT(std::abs(found.camera.fx - f), 4 * found.camera.sigmas[0]) << f;
+    EXPECT_NEAR(found.camera.fx, f, 0.03 * f);
+    for (int k = 0; k < 4; ++k) EXPECT_GT(found.camera.sigmas[k], 0) << k;
+  }
+}
+
+TEST(Calibrate, NumbersThatAreNotFiniteDoNotReachTheResult) {
+  const auto expect_finite = [](const BoardSearch& search, const char* what) {
+    const auto found = calibrate_camera(search, kBoard);
+    if (!found.ok) return;
+    EXPECT_LT(largest_normalized_error(found, phone()), 4) << what;
+    EXPECT_TRUE(std::isfinite(found.rms_px)) << what;
+    for (const double sigma : found.camera.sigmas)
+      EXPECT_TRUE(std::isfinite(sigma) && sigma > 0) << what;
+  };
+  for (const double bad : {std::numeric_limits<double>::quiet_NaN(),
+                           std::numeric_limits<double>::infinity(),
+                           -1e300}) {
+    BoardSearch corner = simulated({.seed = 6});
+    corner.views[3].corners[5].y() = bad;
+    expect_finite(corner, "corner");
+    BoardSearch view = simulated({.seed = 6});
+    for (auto& px : view.views[3].corners) px.x() = bad;
+    expect_finite(view, "view");
+    BoardSearch edge = simulated({.seed = 6});
+    edge.views[3].edge_px = bad;
+    expect_finite(edge, "edge");
+    BoardSearch velocities = simulated({.seed = 6});
+    for (auto& one : velocities.views) one.velocities_px_s.assign(54, Vector2d(1, bad));
+    expect_finite(velocities, "velocities");
+  }
+}
+
+TEST(ResidualStructure, SeparatesNoiseFromWhatViewsHaveInCommon) {
+  std::mt19937 random(3);
+  std::normal_distribution<double> noise(0, 0.2);
+  std::uniform_real_distribution<double> place(0, 1);
+  const auto views = [&](double common_px) {
+    std::vector<Eigen::Matrix4Xd> all(20, Eigen::Matrix4Xd(4, 54));
+    for (auto& view : all)
+      for (auto corner : view.colwise()) {
+        const double x = 640 * place(random), y = 480 * place(random);
+        corner << x, y, noise(random) + common_px * (x < 320 ? 1 : -1), noise(random);
+      }
+    return all;
+  };
+  const auto none = residual_structure(views(0), {640, 480});
+  EXPECT_LT(std::abs(none.significance), 3);
+  EXPECT_LT(none.share, 0.01);
+  const auto common = residual_structure(views(0.1), {640, 480});
+  EXPECT_NEAR(common.rms_px, 0.1, 0.02);
+  EXPECT_NEAR(common.share, 0.01 / 0.09, 0.03);
+  EXPECT_GT(common.significance, 6);
+  // A single view has nothing in common with others.
+  EXPECT_EQ(residual_structure({views(0.1).front()}, {640, 480}).rms_px, 0);
+}
+
+TEST(CalibrationReport, ComparesEachParameterWithTheRecordedOne) {
+  Camera found = phone(), recorded = phone();
+  found.sigmas = {3, 4, 0, 1, 0.01, 0.02, 0, 0.0004};
+  recorded.sigmas = {4, 3, 0, 1, 0.01, 0.02, 0.0003, 0.0004};
+  recorded.fx += 10;
+  const std::string text = comparison_text(found, recorded);
+  EXPECT_THAT(text,
+              HasSubstr("fx              600.00, recorded 610.00 +- 4.00: -10.00 px (-2.0 sigma)"));
+  EXPECT_THAT(text, HasSubstr("(no standard deviation)"));
+  for (const std::string& name : parameter_names(found)) EXPECT_THAT(text, HasSubstr(name)) << name;
+  recorded.distortion = Distortion::equidistant;
+  EXPECT_THAT(comparison_text(found, recorded),
+              testing::AllOf(HasSubstr("The lens models differ"), testing::Not(HasSubstr("k1 "))));
 }
 
 TEST(Calibrate, WarnsIfTheBoardStaysInTheMiddle) {

@@ -77,6 +77,18 @@ TEST(GrowthVerdicts, AreLoweredByFindingsOfTheWholeWindow) {
   }
 }
 
+TEST(Interlaced, NamesTheFirstField) {
+  for (const char* field : {"top", "bottom"}) {
+    const auto found = findings_of({.first_field = field}, {Of::recording});
+    ASSERT_EQ(found.size(), 1U);
+    EXPECT_EQ(found[0].key, "interlaced");
+    EXPECT_EQ(found[0].level, Level::note);
+    EXPECT_EQ(found[0].sentence,
+              fmt::format("interlaced, {} field first: the first field is used", field));
+  }
+  EXPECT_THAT(findings_of({}, {Of::recording}), IsEmpty());
+}
+
 Camera camera_with(double fx, double fy, double cx, double cy) {
   return {.width = 640, .height = 480, .fx = fx, .fy = fy, .cx = cx, .cy = cy};
 }

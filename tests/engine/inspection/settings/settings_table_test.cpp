@@ -158,6 +158,8 @@ TEST(SettingValues, ReportChangesWithoutEffect) {
   EXPECT_EQ(why_idle(find_setting("time_offset"), truth, &recording), "");
   const Settings exact{.options = {.lens = Lens::exact}};
   EXPECT_EQ(why_idle(find_setting("lens"), exact, &recording), "");
+  recording.camera.sigmas = {0, 0, 0, 0};
+  EXPECT_EQ(why_idle(find_setting("lens"), exact, &recording), "");
   recording.camera.sigmas = {1, 1, 1, 1};
   expect_idle("lens", exact, "states its standard deviations");
   Method imported = find_method("gpo");

@@ -81,6 +81,10 @@ libav::Codec open_encoder(const cv::Mat& image, const fs::path& file, const Vide
   }
   if (id != AV_CODEC_ID_MPEG2VIDEO) encoder->flags |= AV_CODEC_FLAG_GLOBAL_HEADER;
   if (options.full_range) encoder->color_range = AVCOL_RANGE_JPEG;
+  if (options.top_field_first) {
+    encoder->flags |= AV_CODEC_FLAG_INTERLACED_DCT | AV_CODEC_FLAG_INTERLACED_ME;
+    encoder->field_order = *options.top_field_first ? AV_FIELD_TT : AV_FIELD_BB;
+  }
   AVDictionary* settings = nullptr;
   if (options.pq) libav::av_dict_set(&settings, "lossless", "1", 0);
   check(libav::avcodec_open2(encoder.get(), codec, &settings), "no encoder");
@@ -111,6 +115,15 @@ libav::Frame frame_of(const cv::Mat& image, const AVCodecContext& encoder, std::
   }
   frame->pts = time;
   return frame;
+}
+
+void declare_fields(AVFrame& frame, bool top_first) {
+#if LIBAVUTIL_VERSION_INT < AV_VERSION_INT(58, 7, 100)  // Debian 12 has 57, Debian 13 has 59
+  frame.interlaced_frame = 1;
+  frame.top_field_first = top_first ? 1 : 0;
+#else
+  frame.flags |= AV_FRAME_FLAG_INTERLACED | (top_first ? AV_FRAME_FLAG_TOP_FIELD_FIRST : 0);
+#endif
 }
 
 void drain(AVCodecContext* encoder, AVFormatContext* format) {
@@ -212,6 +225,7 @@ void make_video(const fs::path& file,
   Output format = open_output(file, *encoder, options);
   for (int i = 0; i < static_cast<int>(images.size()); ++i) {
     const auto frame = frame_of(images[i], *encoder, times_ms.empty() ? i : times_ms[i]);
+    if (options.top_field_first) declare_fields(*frame, *options.top_field_first);
     check(libav::avcodec_send_frame(encoder.get(), frame.get()), "no frame");
     drain(encoder.get(), format.get());
   }

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -21,12 +22,14 @@ struct TelemetryPiece {
 
 /// Options that OpenCV's writer lacks.
 struct VideoOptions {
-  bool b_frames = false;      ///< MPEG-4, one key frame in 12 and two B-frames between others
-  std::string codec{};        ///< FFmpeg's name of an encoder; empty: see `make_video`
-  bool pq = false;            ///< 10 bits by SMPTE ST 2084 (HDR), lossless, for VP9
-  bool full_range = false;    ///< declares the full range; the values remain as they are
-  bool mirrored = false;      ///< horizontally by the player, after the rotation
-  int clockwise_degrees = 0;  ///< rotation by the player; MP4 and MOV only
+  bool b_frames = false;    ///< MPEG-4, one key frame in 12 and two B-frames between others
+  std::string codec{};      ///< FFmpeg's name of an encoder; empty: see `make_video`
+  bool pq = false;          ///< 10 bits by SMPTE ST 2084 (HDR), lossless, for VP9
+  bool full_range = false;  ///< declares the full range; the values remain as they are
+  /// Declares interlaced frames: whether the top field is first. The images remain as they are.
+  std::optional<bool> top_field_first{};
+  bool mirrored = false;                   ///< horizontally by the player, after the rotation
+  int clockwise_degrees = 0;               ///< rotation by the player; MP4 and MOV only
   std::pair<int, int> pixel_aspect{1, 1};  ///< width and height of a pixel
   std::vector<int> times_ms{};             ///< one for each image; default: 25 frames per second
   std::map<std::string, std::string> metadata{};  ///< for the whole file
