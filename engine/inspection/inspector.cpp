@@ -394,7 +394,7 @@ std::shared_ptr<const Inspection> Inspector::inspect(const Settings& settings,
                                                              settings.options.lens));
       main_plane_is_true = e.plane == inspection.window->leader && !inspection.truth_convention;
       if (inspection.truth_convention)
-        e = {.alignment = e.alignment, .plane = e.plane};
+        e = {.alignment = e.alignment, .plane = inspection.window->leader};
       else if (inspection.inertial)
         compare(*inspection.inertial, *inspection.truth, e);
       if (const auto scale = known_scale(inspection); scale && e.scale)
