@@ -16,11 +16,11 @@ namespace {
 using Eigen::Vector2d;
 
 constexpr double kGates = 3;             // distance from an epipolar line [thresholds of inliers]
-constexpr double kLeastTravel = 0.02;    // of a camera that has epipolar lines [plane distance]
+constexpr double kLeastTravel = 0.02;    // path with epipolar lines [plane distance]
 constexpr double kAlike = 0.3;           // difference of two motions, as a share of the longer one
-constexpr int kNeighbors = 6;            // of a track, in the reference image
-constexpr int kLeastAlike = 3;           // of its neighbors
-constexpr std::size_t kLeastTracks = 8;  // of an object
+constexpr int kNeighbors = 6;            // nearest tracks in the reference image
+constexpr int kLeastAlike = 3;           // neighbors that move alike
+constexpr std::size_t kLeastTracks = 8;  // size of an object
 
 /// A track that contradicts the cameras, and its motion beyond that of the main plane.
 struct Stray {

@@ -20,14 +20,14 @@ using Eigen::Vector2d;
 // In 147 healthy windows of nine real recordings, each of 5, 10 and 20 frames, no track passed; in
 // windows of 2 frames, which do not measure their noise, tracks of four did. In rendered overlays
 // of 6 to 80 % of the tracks nine tenths of them or more pass from 3 frames on.
-constexpr int kLeastFrames = 3;            // that see a static track
-constexpr double kLeastNoise = 0.1;        // of one coordinate [pixel_unit]
-constexpr double kMostTimesOthers = 3;     // noise of one track over that of all
-constexpr double kVarianceOfThird = 20;    // 1 + 9 + 9 + 1: variance for a variance of 1
-constexpr double kStaticSigmas = 3;        // RMS motion of a static track
-constexpr double kMovingSigmas = 10;       // RMS motion of a moving track
-constexpr int kPredictedFrames = 6;        // whose homographies predict, spread over the window
-constexpr int kLeastMoving = 8;            // tracks that follow one homography
+constexpr int kLeastFrames = 3;          // that see a static track
+constexpr double kLeastNoise = 0.1;      // least noise of one coordinate [pixel_unit]
+constexpr double kMostTimesOthers = 3;   // noise of one track over that of all
+constexpr double kVarianceOfThird = 20;  // 1 + 9 + 9 + 1: variance for a variance of 1
+constexpr double kStaticSigmas = 3;      // RMS motion of a static track
+constexpr double kMovingSigmas = 10;     // RMS motion of a moving track
+constexpr int kPredictedFrames = 6;      // frames with predicted positions, spread over the window
+constexpr int kLeastMoving = 8;          // tracks that follow one homography
 constexpr double kLeastMovingShare = 0.3;  // the same as a share of the moving tracks
 constexpr std::size_t kLeastStatic = 4;    // fewer can be points on the axis of an orbit
 

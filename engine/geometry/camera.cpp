@@ -197,7 +197,7 @@ double pixel_unit(const Camera& camera) {
 }
 
 double pixel_unit(const Eigen::Matrix3d& K) {
-  constexpr double kUsualDiagonal = 1.25;  // of a 4:3 image that is as wide as its focal length
+  constexpr double kUsualDiagonal = 1.25;  // 4:3 image that is as wide as its focal length
   const bool is_inside = K(0, 2) > 0 && K(1, 2) > 0;
   return unit_of_diagonal(is_inside ? std::hypot(2 * K(0, 2) + 1, 2 * K(1, 2) + 1)
                                     : kUsualDiagonal * K(0, 0));

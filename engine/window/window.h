@@ -74,7 +74,7 @@ struct WindowPlane {
 struct Window {
   int start = 0;                            ///< reference frame, index in the recording
   Eigen::Matrix3d K;                        ///< intrinsics of the undistorted image [px]
-  int width = 0, height = 0;                ///< of the recorded image [px]; 0: unknown
+  int width = 0, height = 0;                ///< size of the recorded image [px]; 0: unknown
   std::vector<std::int64_t> timestamps_ns;  ///< one per frame
   std::vector<Eigen::Matrix2Xd> points_px;  ///< one per frame, 2 x tracks, undistorted; NaN: lost
   /// Standard deviation of each observation over the root mean square of all; one vector per frame.
