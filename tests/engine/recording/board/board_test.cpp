@@ -51,6 +51,17 @@ Camera fisheye() {
   return {640, 480, 190, 191, 320, 240, Distortion::equidistant, {0.003, 0.0007, -0.002, 0.0002}};
 }
 
+TEST(BoardCorners, AreNotMovedBecauseAWideLensBendsTheirLines) {
+  Camera camera = fisheye();
+  camera.fx = camera.fy = 280;
+  for (const double tilt : {0.0, -25.0, 25.0}) {
+    const Pose truth = looking_at(kChessboard, 0.13, tilt, 0);
+    const auto corners = find_board(render_board(kChessboard, camera, truth), kChessboard);
+    ASSERT_EQ(corners.size(), 54U) << tilt;
+    EXPECT_LT(corner_errors(corners, kChessboard, camera, truth).largest_px, 0.5) << tilt;
+  }
+}
+
 TEST(BoardPose, MatchesTheRenderedPoseThroughALens) {
   for (const double tilt : {-35.0, 10.0, 40.0}) {
     const Pose truth = looking_at(kChessboard, 0.35, tilt, 20);
