@@ -19,7 +19,7 @@ using Eigen::Matrix2Xd;
 using Eigen::Vector2d;
 using Eigen::VectorXd;
 
-constexpr int kHalf = 8;              // half the side of a template [px of its level]
+constexpr int kHalfCompared = 8;      // half the side of a template [px of its level]
 constexpr int kReferenceTracks = 24;  // compared in the reference image
 constexpr int kStepTracks = 32;       // compared from image to image
 constexpr int kHalvings = 2;          // from the reference image's level to the coarsest
@@ -67,11 +67,11 @@ cv::Mat correlation_map(const cv::Mat& from,
   const auto square = [](const cv::Point& middle, int half) {
     return cv::Rect(middle.x - half, middle.y - half, 2 * half, 2 * half);
   };
-  const cv::Rect part = square(place, kHalf);
-  const cv::Rect wanted = square(around, kHalf + reach);
+  const cv::Rect part = square(place, kHalfCompared);
+  const cv::Rect wanted = square(around, kHalfCompared + reach);
   const cv::Rect area = wanted & cv::Rect({0, 0}, to.size());
   const bool inside = (part & cv::Rect({0, 0}, from.size())) == part;
-  if (!inside || std::min(area.width, area.height) < 2 * kHalf) return {};
+  if (!inside || std::min(area.width, area.height) < 2 * kHalfCompared) return {};
   cv::Mat pixels, searched, found;
   from(part).convertTo(pixels, CV_32F);
   to(area).convertTo(searched, CV_32F);
