@@ -20,7 +20,7 @@ constexpr double kMostAspect = 0.03;
 // A calibration for another image size moves both coordinates alike; those cameras differ by up to
 // 6 % of half the size.
 constexpr double kLeastResize = 0.06;
-constexpr double kAlike = 0.04;
+constexpr double kAlikeRatios = 0.04;
 constexpr double kWidest_deg = 150, kNarrowest_deg = 5;
 
 /// Returns the longer side's field of view [deg]; a fisheye's angle is proportional to the radius.
@@ -35,11 +35,11 @@ std::optional<double> resize_of(const Camera& camera) {
   const double by_x = 0.5 * (camera.width - 1) / camera.cx;
   const double by_y = 0.5 * (camera.height - 1) / camera.cy;
   const double scale = std::sqrt(by_x * by_y);
-  if (!(scale > 0 && std::isfinite(scale)) || std::abs(std::log(by_x / by_y)) > kAlike ||
+  if (!(scale > 0 && std::isfinite(scale)) || std::abs(std::log(by_x / by_y)) > kAlikeRatios ||
       std::abs(std::log(scale)) < kLeastResize)
     return std::nullopt;
   for (const double usual : {0.25, 1. / 3, 0.375, 0.5, 0.6, 2. / 3, 0.75, 0.8, 1.25, 1.5, 2., 4.})
-    if (std::abs(std::log(scale / usual)) < 0.5 * kAlike) return usual;
+    if (std::abs(std::log(scale / usual)) < 0.5 * kAlikeRatios) return usual;
   return scale;
 }
 

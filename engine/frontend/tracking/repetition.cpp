@@ -32,7 +32,8 @@ constexpr int kAround = 5;          // tracks whose median is a track's period
 constexpr double kResolved_px = 6;  // least period on a level [px of the level]
 constexpr double kCoarse = 0.3;  // less correlation of motions that are refined, on the first level
 constexpr double kFine = 0.15;   // the same of motions that are compared, at half the size
-constexpr double kFits = 0.8;    // least correlation of a track that is compared, at half the size
+constexpr double kLeastCompared =
+    0.8;  // least correlation of a track that is compared, at half the size
 constexpr int kMostMotions = 12;
 constexpr float kOutside = -2;  // value of a map where nothing was compared
 
@@ -196,7 +197,7 @@ std::vector<CommonMotion> common_motions(const Crossing& crossing,
 /// Returns by how many standard deviations more tracks correlate better under one motion than if
 /// both fitted alike (sign test). Differences of correlations have outliers.
 double margin_of(const CommonMotion& one, const CommonMotion& other) {
-  const auto compared = one.correlations.array().max(other.correlations.array()) > kFits;
+  const auto compared = one.correlations.array().max(other.correlations.array()) > kLeastCompared;
   const auto count = static_cast<double>(compared.count());
   const auto better = static_cast<double>(
       (compared && one.correlations.array() > other.correlations.array()).count());
