@@ -84,15 +84,18 @@ TEST(CameraAtRest, IsSeenByTracksThatDoNotMove) {
   for (int k = 0; k < moving + kStill; ++k) ids.push_back(100 + k);
   const Gyroscope tripod = on_tripod(window);
   EXPECT_THAT(found(window, tripod, result_of(window, even), ids), IsEmpty());
+  for (int k = 0; k < kStill; ++k) window.static_tracks.push_back(moving + k);
   for (int i = 0; i < window.frame_count(); ++i) {
     window.points_px[i].conservativeResize(2, moving + kStill);
-    for (int k = 0; k < kStill; ++k) window.points_px[i].col(moving + k) << 20 + 40 * k, 30;
+    window.points_px[i].rightCols(kStill).setConstant(std::numeric_limits<double>::quiet_NaN());
     window.inlier[i].resize(moving + kStill, false);
   }
   const auto findings = found(window, tripod, result_of(window, even), ids);
-  expect_rests(findings, "12 tracks do not move");
-  EXPECT_EQ(findings[0].tracks.size(), 12U);
-  EXPECT_EQ(findings[0].tracks.front(), 100 + moving);
+  const Finding* rests = find_finding(findings, "camera-at-rest");
+  ASSERT_TRUE(rests);
+  expect_rests({*rests}, "12 tracks do not move");
+  EXPECT_EQ(rests->tracks.size(), 12U);
+  EXPECT_EQ(rests->tracks.front(), 100 + moving);
 }
 
 TEST(CameraAtRest, CountsRejectedSolutions) {
