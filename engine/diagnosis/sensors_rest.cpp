@@ -22,7 +22,6 @@ using Eigen::Vector3d;
 // 10, 16 and 30 frames each), and on simulated cameras that move or turn evenly, so that their
 // sensors are at rest, too. No window of euroc-room, cards-tracks, tags-straight, tags-mountain,
 // phone-street or a GoPro's video has sensors at rest.
-constexpr double kStill_px = 0.5;      // largest distance of a track that does not move
 constexpr double kLeastMotion_px = 5;  // least motion of the plane's tracks
 constexpr int kLeastStill = 10;        // posters: 35 to 62, others 0
 constexpr double kLeastStillShare = 0.05;
@@ -32,23 +31,17 @@ constexpr double kLeastDistance_m = 0.1;  // no plane is filmed from less
 
 double seconds(std::int64_t ns) { return 1e-9 * static_cast<double>(ns); }
 
-/// Largest distance of each track from where it is in the first frame [px]; NaN if it is lost in
-/// more than half of the frames.
-std::vector<double> distances_px(const Window& window) {
+/// Returns the median over the plane's tracks of their largest distance from where they are in the
+/// first frame [px]; 0 without any.
+double motion_of_plane_px(const Window& window) {
   std::vector<double> most_px;
   for (int k = 0; k < window.track_count(); ++k) {
-    double most = 0;
-    int seen = 0;
-    for (const Eigen::Matrix2Xd& points : window.points_px) {
-      const double px = (points.col(k) - window.points_px.front().col(k)).norm();
-      if (!std::isfinite(px)) continue;
-      most = std::max(most, px);
-      ++seen;
-    }
-    const bool long_enough = 2 * seen > window.frame_count();
-    most_px.push_back(long_enough ? most : std::numeric_limits<double>::quiet_NaN());
+    if (!window.is_inlier_track(k)) continue;
+    double& most = most_px.emplace_back(0);
+    for (const Eigen::Matrix2Xd& points : window.points_px)
+      most = std::fmax(most, (points.col(k) - window.points_px.front().col(k)).norm());
   }
-  return most_px;
+  return most_px.empty() ? 0 : median(std::move(most_px));
 }
 
 std::vector<Pose> cameras_of(const Initialization& result) {
@@ -124,18 +117,11 @@ std::optional<SensorsRest> sensors_rest(const Window& window,
   const auto rest = sensors_at_rest(gyroscope, begin, end);
   if (!rest) return std::nullopt;
   SensorsRest found{.accelerometer = rest->mean_m_s2.has_value()};
-  const std::vector<double> moved_px = distances_px(window);
-  std::vector<double> of_plane;
-  for (int k = 0; k < window.track_count(); ++k) {
-    if (window.is_inlier_track(k) && std::isfinite(moved_px[k])) of_plane.push_back(moved_px[k]);
-    if (moved_px[k] < kStill_px) found.still_tracks.push_back(k);
-  }
-  if (of_plane.empty()) return std::nullopt;
-  found.moved_px = median(std::move(of_plane));
+  found.moved_px = motion_of_plane_px(window);
   if (found.moved_px < kLeastMotion_px) return std::nullopt;
-  const auto still = std::ssize(found.still_tracks);
-  if (still < kLeastStill || static_cast<double>(still) < kLeastStillShare * window.track_count())
-    found.still_tracks.clear();
+  const auto still = std::ssize(window.static_tracks);
+  if (still >= kLeastStill && static_cast<double>(still) >= kLeastStillShare * window.track_count())
+    found.still_tracks = window.static_tracks;
   const std::vector<Pose> cameras = cameras_of(result);
   if (cameras.size() != times_ns.size()) return found;
   found.uncertain_deg =
