@@ -117,6 +117,7 @@ std::shared_ptr<const Tracks> beginning(const std::shared_ptr<const Tracks>& who
   tracks.raw_px.resize(frames);
   if (!tracks.sigma_px.empty()) tracks.sigma_px.resize(frames);
   if (!tracks.forward_backward_px.empty()) tracks.forward_backward_px.resize(frames);
+  if (tracks.repetition) tracks.repetition->margins.resize(frames);
   for (std::optional<TrackEnd>& end : tracks.ends)
     if (end && end->frame >= frames) end.reset();
   return std::make_shared<const Tracks>(std::move(tracks));

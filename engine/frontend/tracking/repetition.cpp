@@ -19,10 +19,11 @@ using Eigen::Matrix2Xd;
 using Eigen::Vector2d;
 using Eigen::VectorXd;
 
-constexpr int kHalfCompared = 8;      // half the side of a template [px of its level]
-constexpr int kReferenceTracks = 24;  // compared in the reference image
-constexpr int kStepTracks = 32;       // compared from image to image
-constexpr int kHalvings = 2;          // from the reference image's level to the coarsest
+constexpr int kHalfCompared = 8;       // half the side of a template [px of its level]
+constexpr int kReferenceTracks = 24;   // compared in the reference image
+constexpr int kStepTracks = 32;        // compared from image to image
+constexpr double kLeastContrast = 64;  // of a template, one gray level
+constexpr int kHalvings = 2;           // from the reference image's level to the coarsest
 // Least correlation of the median track with a second place. It is 0.55 to 0.68 on random texture
 // and in rooms, 0.80 to 0.99 on tiles of 26 to 75 px, bricks, dots and chessboards.
 constexpr double kAlike = 0.75;
@@ -59,7 +60,8 @@ int reach_on(int level, const SmoothedPyramid& pyramid) {
 }
 
 /// Returns the correlations of the template around a place with those around another one, shifted
-/// by up to `reach` along both axes; CV_32FC1. Returns an empty map if the template is not inside.
+/// by up to `reach` along both axes; CV_32FC1. Returns an empty map if the template is not inside
+/// or uniform.
 cv::Mat correlation_map(const cv::Mat& from,
                         const cv::Mat& to,
                         const cv::Point& place,
@@ -75,6 +77,8 @@ cv::Mat correlation_map(const cv::Mat& from,
   if (!inside || std::min(area.width, area.height) < 2 * kHalfCompared) return {};
   cv::Mat pixels, searched, found;
   from(part).convertTo(pixels, CV_32F);
+  pixels -= cv::mean(pixels)[0];
+  if (cv::norm(pixels, cv::NORM_INF) < kLeastContrast) return {};  // correlates with all
   to(area).convertTo(searched, CV_32F);
   cv::matchTemplate(searched, pixels, found, cv::TM_CCOEFF_NORMED);
   cv::Mat map(2 * reach + 1, 2 * reach + 1, CV_32F, cv::Scalar(kOutside));
