@@ -50,6 +50,7 @@ std::span<const Check> checks() {
   // clang-format off
   static const Check table[] = {
       {"no-plane", "No plane among the tracks", Of::window, false, no_plane},
+      {"two-orientations", "Two orientations of the plane fit", Of::window, false, two_orientations},
       {"implausible-intrinsics", "Implausible focal length or principal point", Of::recording, true, implausible_intrinsics},
       {"rotation-only", "Rotations alone explain the images", Of::length, false, rotation_only},
       {"late-clock", "The gyroscope's clock is late", Of::result, false, late_clock},
