@@ -24,11 +24,9 @@ MethodRun run_from_both(Window window,
                         const Rotations& rotations,
                         const std::function<Initialization(const Window&)>& run);
 
-/// Returns by how many standard deviations the tracks fit solution `a` better than `b`. Each track
-/// is one sample, because its errors in all frames may be correlated: the difference of its squared
-/// residuals, which are distances of the main plane's inliers from their transferred positions, and
-/// of all others from their epipolar lines, up to the threshold of inliers. (Vuong's test of two
-/// models, 1989.)
+/// Returns by how many standard deviations the tracks fit solution `a` better than `b` (Vuong's
+/// test of two models, 1989; engine/method.md, eq. 6c). Each track is one sample, because its
+/// errors in all frames may be correlated.
 double preference_sigmas(const Window& window, const RefusedSolution& a, const RefusedSolution& b);
 
 }  // namespace gpo
