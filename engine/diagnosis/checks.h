@@ -26,6 +26,7 @@ Findings uncertain_normal(const Evidence& evidence);
 // result_checks.cpp: the method and its numbers.
 Findings not_finite(const Evidence& evidence);
 Findings no_plane(const Evidence& evidence);
+Findings two_orientations(const Evidence& evidence);
 Findings method_failed(const Evidence& evidence);
 Findings unstable_method(const Evidence& evidence);
 

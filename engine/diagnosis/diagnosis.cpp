@@ -53,6 +53,7 @@ std::span<const Check> checks() {
   static const Check table[] = {
       {"not-finite", "A number that is not finite", Of::length, false, not_finite},
       {"no-plane", "No plane among the tracks", Of::window, false, no_plane},
+      {"two-orientations", "Two orientations of the plane fit", Of::window, false, two_orientations},
       {"implausible-intrinsics", "Implausible focal length or principal point", Of::recording, true, implausible_intrinsics},
       {"truth-conventions", "The ground truth fits by another convention", Of::window, false, truth_conventions},
       {"static-tracks", "Tracks that do not move while others do", Of::window, true, static_tracks},

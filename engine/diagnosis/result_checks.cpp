@@ -33,6 +33,31 @@ Findings no_plane(const Evidence& e) {
        .sentence = says_why ? e.result->reason : "no tracks agree with one homography a frame"}};
 }
 
+Findings two_orientations(const Evidence& e) {
+  if (e.result == nullptr || !e.result->ambiguity) return {};
+  const auto& [apart_deg, undecided, rejected, failure] = *e.result->ambiguity;
+  if (!undecided.empty())
+    return {{.level = Level::degenerate,
+             .sentence = fmt::format(
+                 "Ambiguous: two plane orientations {:.0f} deg apart fit equally well", apart_deg),
+             .advice = "a gyroscope or more sideways motion resolves it, and the settings "
+                       "`rotations averaging-first` and `averaging-second` take one of them",
+             .view = "image"}};
+  const std::string both = fmt::format(
+      "two plane orientations {:.0f} deg apart fitted the homographies equally well", apart_deg);
+  if (!failure.empty())
+    return {{.level = Level::weak,
+             .sentence = fmt::format("{}; the method fails from one: {}", both, failure)}};
+  if (!rejected)
+    return {{.sentence = both + "; both end in the same normal after the optimization"}};
+  return {{.level = Level::weak,
+           .sentence = fmt::format("{}; after the optimization the residuals of all tracks prefer "
+                                   "one to the other, {:.0f} deg apart, by {:.1f} sigma",
+                                   both,
+                                   rejected->apart_deg,
+                                   rejected->sigmas)}};
+}
+
 Findings method_failed(const Evidence& e) {
   if (e.result == nullptr || e.result->ok) return {};
   const bool judged = e.numbers != nullptr && e.numbers->noise_px;

@@ -260,8 +260,7 @@ Consensus nearest_plane(std::span<const Pair> pairs,
 
 Rotations averaged_rotations(const Window& window,
                              const std::stop_token& stop,
-                             std::span<const Matrix3d> R_wc_given,
-                             int orientation) {
+                             std::span<const Matrix3d> R_wc_given) {
   const auto [pairs, reason] = decompose_reference_pairs(window);
   if (!reason.empty()) return {{}, reason};
   const std::vector<Consensus> found = consensuses(pairs);
@@ -274,21 +273,13 @@ Rotations averaged_rotations(const Window& window,
     rotations.note = resolved->second;
     return rotations;
   }
+  Rotations rotations = rotations_given_plane(window, pairs, found.front(), stop);
   const Consensus* other = equally_good(found);
-  if (other == nullptr) return rotations_given_plane(window, pairs, found.front(), stop);
-  const double apart_deg = angle_deg(other->normal, found.front().normal);
-  if (orientation == 0)
-    return {{},
-            fmt::format("{} {:.0f} deg apart fit equally well. A gyroscope or more sideways motion "
-                        "resolves it",
-                        kAmbiguousPlane,
-                        apart_deg)};
-  const Consensus& chosen = orientation == 1 ? found.front() : *other;
-  Rotations rotations = rotations_given_plane(window, pairs, chosen, stop);
-  rotations.note =
-      fmt::format("orientation {} of two that are {:.0f} deg apart and fit equally well",
-                  orientation,
-                  apart_deg);
+  if (other == nullptr || rotations.stopped) return rotations;
+  Rotations second = rotations_given_plane(window, pairs, *other, stop);
+  if (second.stopped) return second;
+  rotations.R_wc_other = std::move(second.R_wc);
+  rotations.orientations_apart_deg = angle_deg(other->normal, found.front().normal);
   return rotations;
 }
 

@@ -11,7 +11,6 @@
 #include <span>
 #include <stop_token>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include <Eigen/Core>
@@ -29,13 +28,16 @@ struct Rotations {
   std::string note = "";  ///< how an ambiguity was resolved, if any
   /// Rotations by images alone that calibrated a gyroscope, one per frame; empty for other sources.
   std::vector<Eigen::Matrix3d> R_wc_images = {};
+  /// Those of the other one of two plane orientations that fit equally well; empty if one is clear.
+  std::vector<Eigen::Matrix3d> R_wc_other = {};
+  double orientations_apart_deg = 0;  ///< angle between the planes of `R_wc` and `R_wc_other`
 };
 
 /// automatic: a gyroscope, calibrated if the images can; without one five-point rotations if the
 /// scene has more than one plane, else averaging. raw: an uncalibrated gyroscope, else averaging.
-/// averaging uses decomposed homographies, which may fit two plane orientations equally well;
-/// _first and _second take one of them, the first one fits slightly better. five_point and direct
-/// use all tracks.
+/// averaging uses decomposed homographies. If these fit two plane orientations equally well, the
+/// results of both decide; _first and _second take one of them, the first one fits slightly better.
+/// five_point and direct use all tracks.
 enum class RotationSource {
   automatic,
   raw,
@@ -95,20 +97,16 @@ Rotations calibrated_gyro_rotations(const Gyroscope& gyroscope,
                                     const Window& window,
                                     const std::stop_token& stop = {});
 
-/// Reasons for missing rotations of a window with two equally good plane orientations begin so.
-inline constexpr std::string_view kAmbiguousPlane = "Ambiguous: two plane orientations";
-
 /// Estimates the rotations of a window's cameras from its images alone: decomposes homographies
 /// between pairs of frames, selects the candidates whose plane normal agrees over the window, and
 /// averages their rotations. On a plane these are far more accurate than five-point rotations
 /// (`tests/engine/frontend/rotations_test.cpp` measures both). Roughly known rotations
-/// (one per frame, e.g. a gyroscope's) resolve ambiguities; without any, another plane may. Empty,
-/// with a reason, if the homographies allow no consistent choice or are ambiguous, or if stopped.
-/// `orientation` 1 or 2 takes that one of two equally good plane orientations.
+/// (one per frame, e.g. a gyroscope's) resolve ambiguities; without any, another plane may, else
+/// `R_wc_other` has the second orientation. Empty, with a reason, if the homographies allow no
+/// consistent choice, or if stopped.
 Rotations averaged_rotations(const Window& window,
                              const std::stop_token& stop = {},
-                             std::span<const Eigen::Matrix3d> R_wc_given = {},
-                             int orientation = 0);
+                             std::span<const Eigen::Matrix3d> R_wc_given = {});
 
 /// Minimal solver of relative poses: Nister's five-point algorithm, or the eigensolver of Kneip and
 /// Lynen 2013, which optimizes the rotation alone from a guess.

@@ -214,11 +214,15 @@ struct Inspector::Stages {
     if (recording->camera_source == CameraSource::guess) options.camera_is_guess = true;
     ImportedResult imported;
     const bool imports = bind_to_recording(options.method, imported);
-    Window window = with_rotations(*outliers.value, given, options);
-    const Sources sources = sources_of(*recording, window, rotations.value);
+    const Sources sources = sources_of(*recording, *outliers.value, rotations.value);
     const auto begin = std::chrono::steady_clock::now();
-    Initialization found =
-        run_method(window, given, sources, options, watch_of(settings, stop, progress));
+    MethodRun of_method = run_method(with_rotations(*outliers.value, given, options),
+                                     given,
+                                     sources,
+                                     options,
+                                     watch_of(settings, stop, progress));
+    Window& window = of_method.window;
+    Initialization& found = of_method.result;
     inspection.timing = timing(settings, milliseconds_since(begin), found.solver.milliseconds);
     if (imports) inspection.imported = imported;
     add_own_noise(window, sources, options, stop, found);
@@ -226,6 +230,8 @@ struct Inspector::Stages {
     if (!given.R_wc.empty()) {
       Settings acting = *rotations.key;
       acting.options.lens = options.lens;
+      if (window.R_wc == given.R_wc_other)
+        acting.options.rotations = RotationSource::averaging_second;
       const bool grown = growth.update(acting, [&] {
         auto found_numbers = growing_numbers(window, options.lens, request.stop);
         return request.stop.stop_requested() ? std::nullopt

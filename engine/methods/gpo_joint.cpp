@@ -252,6 +252,7 @@ Initialization initialize_gpo_joint(const Window& window,
   if (gyro_unknowns(window, fit.rotations.model) > 3)
     result.time_offset_s = fit.solution.motion.time_offset_s;
   if (fit.row_delay_s != 0) result.row_delay_s = fit.row_delay_s;
+  if (joint && joint->other) result.other_minimum = solution_of(facing(fit.window, *joint->other));
   return result;
 }
 

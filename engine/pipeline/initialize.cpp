@@ -272,13 +272,15 @@ WindowResult initialize(const Camera& camera,
   const bool lacks_samples = gyroscope != nullptr && gyro == nullptr && R_wc.empty();
   result.rotations_note =
       joined(lacks_samples ? kNoSamples : joined(rotations.note, rotations.advice), chosen.note);
-  result.window = with_rotations(std::move(window), chosen.rotations, options);
+  window = with_rotations(std::move(window), chosen.rotations, options);
   gyro = rotations.usable(gyro);
   const Sources sources{&camera, gyro, body_camera_of(gyro, options)};
-  const std::string missing = missing_plane(result.window, options);
-  Initialization found = missing.empty()
-                             ? run_method(result.window, chosen.rotations, sources, options, stop)
-                             : failed(missing);
+  const std::string missing = missing_plane(window, options);
+  MethodRun of_method =
+      missing.empty() ? run_method(std::move(window), chosen.rotations, sources, options, stop)
+                      : MethodRun{std::move(window), failed(missing)};
+  result.window = std::move(of_method.window);
+  Initialization found = std::move(of_method.result);
   add_own_noise(result.window, sources, options, stop, found);
   std::vector<Verdict> growth;
   const bool needs_growth = missing.empty() && !found.ok && !chosen.rotations.R_wc.empty();

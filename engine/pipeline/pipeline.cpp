@@ -20,6 +20,17 @@
 namespace gpo {
 namespace {
 
+/// Returns the rotations of one orientation; the first one is 1.
+Rotations of_orientation(int number, Rotations both) {
+  if (both.R_wc_other.empty()) return both;
+  if (number == 2) both.R_wc = std::move(both.R_wc_other);
+  both.R_wc_other.clear();
+  both.note = fmt::format("orientation {} of two that are {:.0f} deg apart and fit equally well",
+                          number,
+                          both.orientations_apart_deg);
+  return both;
+}
+
 Rotations rotations_from(RotationSource source,
                          const Window& window,
                          const RotationInputs& inputs,
@@ -30,7 +41,7 @@ Rotations rotations_from(RotationSource source,
   if (auto reason = reason_not_to_try(window)) return {{}, *reason};
   if (source == averaging) return averaged_rotations(window, stop);
   if (source == averaging_first || source == averaging_second)
-    return averaged_rotations(window, stop, {}, source == averaging_first ? 1 : 2);
+    return of_orientation(source == averaging_first ? 1 : 2, averaged_rotations(window, stop));
   if (source == gyro_calibrated) return calibrated_gyro_rotations(*inputs.gyroscope, window, stop);
   const auto solver = source == direct ? RelativeSolver::eigensolver : RelativeSolver::five_point;
   return pair_rotations(window, {solver, window.threshold_px, inputs.seed}, stop);
@@ -164,16 +175,16 @@ ChosenRotations chosen_rotations(const Window& window,
                                  RotationSource requested,
                                  const std::stop_token& stop) {
   ChosenRotations chosen = rotations_at_stamps(at_time_stamps(window), inputs, requested, stop);
-  if (!chosen.rotations.R_wc.empty() || window.row_delay) return chosen;
+  const auto is_clear = [](const Rotations& r) { return !r.R_wc.empty() && r.R_wc_other.empty(); };
+  if (is_clear(chosen.rotations) || window.row_delay) return chosen;
   Window late = window;
   for (const double row_delay_s : likely_row_delays_s(window)) {
     if (chosen.rotations.stopped) break;
     late.selection_row_delay_s = row_delay_s;
     ChosenRotations other = rotations_at_stamps(at_time_stamps(late), inputs, requested, stop);
-    const bool refused = other.rotations.R_wc.empty() && !other.rotations.stopped;
     const bool best =
-        chosen.rotations.R_wc.empty() || other.rotations.sigma_rad < chosen.rotations.sigma_rad;
-    if (!refused && best) chosen = std::move(other);
+        !is_clear(chosen.rotations) || other.rotations.sigma_rad < chosen.rotations.sigma_rad;
+    if (other.rotations.stopped || (is_clear(other.rotations) && best)) chosen = std::move(other);
   }
   return chosen;
 }
@@ -231,17 +242,24 @@ Window with_rotations(Window window, const Rotations& rotations, const Initializ
   return window;
 }
 
-Initialization run_method(const Window& window,
-                          const Rotations& rotations,
-                          const Sources& sources,
-                          const InitializeOptions& options,
-                          const Watch& watch) {
+MethodRun run_method(Window window,
+                     const Rotations& rotations,
+                     const Sources& sources,
+                     const InitializeOptions& options,
+                     const Watch& watch) {
   if (rotations.R_wc.empty()) {
     Initialization result = failed(rotations.reason);
     result.stopped = rotations.stopped;
-    return result;
+    return {std::move(window), std::move(result)};
   }
-  return run(window, sources, options, watch);
+  if (rotations.R_wc_other.empty()) {
+    Initialization result = run(window, sources, options, watch);
+    return {std::move(window), std::move(result)};
+  }
+  return run_from_both(std::move(window), rotations, [&](const Window& one) {
+    Initialization result = run(one, sources, options, watch);
+    return result.ok ? with_uncertainty(options.method.row(), one, std::move(result)) : result;
+  });
 }
 
 void add_own_noise(const Window& window,

@@ -10,6 +10,7 @@
 #include "engine/initialize.h"
 #include "engine/methods/common/initialization.h"
 #include "engine/methods/common/method_options.h"
+#include "engine/pipeline/orientations.h"
 #include "engine/window/tracks.h"
 #include "engine/window/window.h"
 
@@ -110,12 +111,13 @@ WindowRotations window_rotations(const Window& window,
 Window with_rotations(Window window, const Rotations& rotations, const InitializeOptions& options);
 
 /// Returns the method's result for the window, without assessment; a failure if there are no
-/// rotations. Throws InputError for an unknown method.
-Initialization run_method(const Window& window,
-                          const Rotations& rotations,
-                          const Sources& sources,
-                          const InitializeOptions& options,
-                          const Watch& watch);
+/// rotations. Runs it twice if these are ambiguous (`run_from_both`). Throws InputError for an
+/// unknown method.
+MethodRun run_method(Window window,
+                     const Rotations& rotations,
+                     const Sources& sources,
+                     const InitializeOptions& options,
+                     const Watch& watch);
 
 /// Adds the covariances of the method's own estimates to a result that is ok (`own_noise`).
 void add_own_noise(const Window& window,

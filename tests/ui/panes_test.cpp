@@ -44,46 +44,28 @@ TEST_F(PanesTest, DrawAnyResultWithoutCommands) {
   }
 }
 
-/// A window with two orientations of the plane, and the results of both.
-class AmbiguousWindow : public PanesTest {
- protected:
-  AmbiguousWindow() {
-    Inspection ambiguous = made_inspection({.ok = false});
-    auto failure = std::make_shared<Initialization>(*ambiguous.initialization);
-    failure->reason = std::string(kAmbiguousPlane) + " 40 deg apart fit equally well";
+TEST_F(PanesTest, DrawBothCubesOfAnAmbiguousWindow) {
+  const Inspection refused = made_inspection({.refused = true});
+  const auto drawn = [&](double first_rad, double second_rad) {
+    auto failure = std::make_shared<Initialization>(*refused.initialization);
+    failure->ambiguity.emplace();
+    for (const double angle_rad : {first_rad, second_rad}) {
+      RefusedSolution& one = failure->ambiguity->undecided.emplace_back(*failure->refused);
+      one.plane.normal = so3_exp(angle_rad * Eigen::Vector3d::UnitX()) * one.plane.normal;
+    }
+    Inspection ambiguous = refused;
     ambiguous.initialization = failure;
     open(ambiguous);
-  }
-  void compute_both() {
-    SurveyResults results;
-    for (const Settings& settings : orientation_settings(state_)) {
-      Inspection one = made_inspection({.estimate_error = results.empty() ? 0.0 : 20.0});
-      one.settings = settings;
-      results.push_back({settings, std::make_shared<const Inspection>(one), ""});
-    }
-    state_.results.surveyed = std::make_shared<const SurveyResults>(results);
-  }
-};
-
-TEST_F(AmbiguousWindow, RequestsAndShowsBothOrientationsAndTakesOne) {
-  EXPECT_EQ(wanted_inspections(state_), orientation_settings(state_));
-  ASSERT_EQ(orientation_settings(state_).size(), 2U);
-  draw_times(3);
-  const cv::Mat waiting = context_.read_bgr();
-  compute_both();
-  draw_times(3);
-  const cv::Mat both = context_.read_bgr();
+    draw_times(3);
+    const Rectangle place = layout().image;
+    const cv::Rect2f part(place.x, place.y, place.width, place.height);
+    return cv::Mat(context_.read_bgr()(cv::Rect(part.tl(), part.br())).clone());
+  };
+  const cv::Mat both = drawn(0, 0.4);
   keep("ambiguous", both);
-  EXPECT_FALSE(same_bytes(waiting, both));
-  const Rectangle side = layout().side;
-  std::string taken;
-  for (float y = side.y + 10; y < side.y + 160 && taken.empty(); y += 6)
-    taken = test::line_of(click(side.x + side.width / 2 + 30, y));
-  EXPECT_EQ(taken, "set rotations averaging-second");
-  run_line(state_, taken);
-  EXPECT_TRUE(orientation_settings(state_).empty()) << "the latest result has other settings";
-  run_line(state_, "undo");
-  EXPECT_EQ(orientation_settings(state_).size(), 2U);
+  EXPECT_TRUE(same_bytes(both, drawn(0, 0.4)));
+  EXPECT_FALSE(same_bytes(both, drawn(0.1, 0.4)));
+  EXPECT_FALSE(same_bytes(both, drawn(0, 0.3)));
 }
 
 TEST_F(PanesTest, ClickInTheResidualsGoesToTheFrame) {

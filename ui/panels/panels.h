@@ -167,7 +167,6 @@ struct Views {
   std::string image_error;                     ///< why there is no image
   LegendHits legend_hits;                      ///< rows of the image's legend in the last frame
   SceneView scene;
-  std::array<std::unique_ptr<SceneView>, 2> orientations;  ///< scenes of an ambiguous window
   ListEntry palette, browser, sources;
   std::array<TrackPatch, 2> patches;        ///< a track in its first and in the current frame
   std::map<std::string, ChartView> charts;  ///< by name, see `chart_item`
@@ -216,7 +215,6 @@ DrawPanel verdict_panel, failure_banner;
 /// State of a live source: what its window lacks to be ready, and how many images were dropped.
 DrawPanel live_banner;
 /// Both answers of an ambiguous window side by side, or one above the other.
-DrawPanel orientations_panel;
 /// One column for each compared configuration, in place of image and side pane.
 DrawPanel compare_panel;
 /// In front of the whole window.

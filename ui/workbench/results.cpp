@@ -1,6 +1,6 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-// The results that the window shows besides the current one: compared ones, and two orientations.
+// The compared results that the window shows besides the current one.
 #include "ui/workbench/state.h"
 
 #include <algorithm>
@@ -124,25 +124,6 @@ std::optional<Compared> flipped_result(const WorkbenchState& state) {
   return both.back();
 }
 
-std::vector<Settings> orientation_settings(const WorkbenchState& state) {
-  const auto& inspection = state.results.inspection;
-  const bool ambiguous = state.document.recording && !state.live && inspection &&
-                         inspection->initialization && !inspection->initialization->ok &&
-                         inspection->initialization->reason.starts_with(kAmbiguousPlane);
-  if (!ambiguous || !(inspection->settings == state.document.settings)) return {};
-  std::vector<Settings> both(2, inspection->settings);
-  both[0].options.rotations = RotationSource::averaging_first;
-  both[1].options.rotations = RotationSource::averaging_second;
-  return both;
-}
-
-std::vector<Compared> orientation_results(const WorkbenchState& state) {
-  std::vector<Compared> results;
-  for (const Settings& settings : orientation_settings(state))
-    results.push_back(surveyed(state, configuration_of(settings), settings));
-  return results;
-}
-
 std::vector<int> curve_lengths(int frames) {
   constexpr int kStep = 5;
   std::vector<int> lengths = {frames};
@@ -152,7 +133,7 @@ std::vector<int> curve_lengths(int frames) {
 }
 
 std::vector<Settings> wanted_inspections(const WorkbenchState& state) {
-  std::vector<Settings> wanted = orientation_settings(state);
+  std::vector<Settings> wanted;
   if (!state.document.recording) return wanted;
   PaneNeeds needs = needs_of(state.view.panes);
   if (wants_report(state)) needs.compared = needs.lengths = true;

@@ -327,13 +327,6 @@ std::vector<Compared> compared_with_current(const WorkbenchState& state);
 /// The result shown instead of the current one while `flip` is on; nullopt if there is none.
 std::optional<Compared> flipped_result(const WorkbenchState& state);
 
-/// The settings that take each orientation of the plane if the current window allows two of them;
-/// else empty.
-std::vector<Settings> orientation_settings(const WorkbenchState& state);
-
-/// Their results; null until computed.
-std::vector<Compared> orientation_results(const WorkbenchState& state);
-
 /// The window lengths of the curves, the longest first: `frames`, then multiples of five.
 std::vector<int> curve_lengths(int frames);
 

@@ -72,9 +72,7 @@ ordered_json frames_json(const Inspection& inspection) {
   return frames;
 }
 
-ordered_json refused_json(const Inspection& inspection) {
-  const RefusedSolution& refused = *inspection.initialization->refused;
-  int index = inspection.window->start;
+ordered_json refused_json(const RefusedSolution& refused, int index) {
   const auto frames = array_json(refused.cameras, [&](const Pose& camera) -> ordered_json {
     return {{"index", index++},
             {"p_wc", vector_json(camera.p_wc)},
@@ -299,11 +297,16 @@ void add_sensors(const Initialization& result, ordered_json& json) {
 void add_rejected(const Inspection& inspection, ordered_json& json) {
   const Initialization& result = *inspection.initialization;
   const auto& ids = inspection.tracks->ids;
+  const int start = inspection.window->start;
   if (!result.candidates.empty())
     json["candidates"] = array_json(result.candidates, [&](const auto& one) {
-      return candidate_json(one, inspection.window->start);
+      return candidate_json(one, start);
     });
-  if (result.refused) json["refused"] = refused_json(inspection);
+  if (result.refused) json["refused"] = refused_json(*result.refused, start);
+  if (result.ambiguity && !result.ambiguity->undecided.empty())
+    json["alternatives"] = array_json(result.ambiguity->undecided, [&](const auto& one) {
+      return refused_json(one, start);
+    });
   if (!result.dropped.empty())
     json["dropped"] = array_json(result.dropped, [&](int j) -> ordered_json {
       return {{"track", ids[j]}, {"reason", "beyond the plane's horizon"}};

@@ -152,11 +152,17 @@ std::vector<PlanePatch> plane_patches(const Inspection& inspection) {
   return patches;
 }
 
-std::optional<PlanePatch> refused_patch(const Inspection& inspection) {
-  const auto& refused = inspection.initialization->refused;
-  if (!refused) return std::nullopt;
+std::vector<PlanePatch> refused_patches(const Inspection& inspection) {
+  const Initialization& failure = *inspection.initialization;
+  std::vector<RefusedSolution> solutions;
+  if (failure.ambiguity && !failure.ok) solutions = failure.ambiguity->undecided;
+  if (solutions.empty() && failure.refused) solutions = {*failure.refused};
   const Window& window = *inspection.window;
-  return patch_of(inspection, window.leader, window.inlier_tracks(0), refused->plane);
+  std::vector<PlanePatch> patches;
+  for (const RefusedSolution& one : solutions)
+    if (auto patch = patch_of(inspection, window.leader, window.inlier_tracks(0), one.plane))
+      patches.push_back(std::move(*patch));
+  return patches;
 }
 
 std::shared_ptr<const NormalStudy> study_normals(const Inspection& inspection,

@@ -46,8 +46,9 @@ struct PlanePatch {
 /// Returns the patches of all further planes of a successful initialization.
 std::vector<PlanePatch> plane_patches(const Inspection& inspection);
 
-/// Returns the patch of a refused solution's plane; nullopt if none of its tracks meets it.
-std::optional<PlanePatch> refused_patch(const Inspection& inspection);
+/// Returns the patches of the refused solutions' planes; without those that none of the tracks
+/// meets.
+std::vector<PlanePatch> refused_patches(const Inspection& inspection);
 
 /// Evidence of a window on the plane's normal, independent of the method. Immutable.
 struct NormalStudy {

@@ -49,6 +49,7 @@ Initialization refused(std::string reason, Initialization found) {
   Initialization result = failed(std::move(reason), std::move(found.solver));
   result.candidates = std::move(found.candidates);
   result.verdict = std::move(found.verdict);
+  result.ambiguity = std::move(found.ambiguity);
   result.refused = std::move(found.refused);
   if (!found.cameras.empty()) result.refused = {found.plane, std::move(found.cameras)};
   return result;

@@ -221,6 +221,21 @@ struct RefusedSolution {
   std::vector<Pose> cameras;  ///< one per frame
 };
 
+/// How a window ended whose homographies fit two orientations of the plane equally well. The method
+/// was run with the rotations of both.
+struct Ambiguity {
+  double apart_deg = 0;  ///< angle between the orientations, before the optimization
+  /// Solutions between which the tracks do not decide, the returned one first; empty if they do.
+  std::vector<RefusedSolution> undecided = {};
+  /// The solution that the tracks decide against most weakly; nullopt if all are one.
+  struct Rejected {
+    double apart_deg = 0;  ///< angle between its normal and the result's
+    double sigmas = 0;     ///< by which the tracks fit the result better
+  };
+  std::optional<Rejected> rejected = std::nullopt;
+  std::string failure = {};  ///< why the method failed from one orientation; empty if it did not
+};
+
 /// Result of a method. World = reference camera, gauge: plane distance 1. If `ok` is false,
 /// `reason` says why, and there are no poses, points or plane.
 struct Initialization {
@@ -251,6 +266,9 @@ struct Initialization {
   std::vector<HomographyCandidate> candidates;
   /// The rejected solution of a failure.
   std::optional<RefusedSolution> refused = {};
+  /// Another minimum of the method's cost, about as low, if it looked for one.
+  std::optional<RefusedSolution> other_minimum = {};
+  std::optional<Ambiguity> ambiguity = {};  ///< nullopt if the rotations were clear
 };
 
 /// Copies the planes' uncertainties from `uncertainty` to `planes`.

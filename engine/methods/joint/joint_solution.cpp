@@ -230,6 +230,7 @@ std::optional<Solution> solve(const Window& window,
 
 Solution better_of_twins(Solution one, Solution other) {
   if (other.solver.final_cost < one.solver.final_cost) std::swap(one, other);
+  one.other = other.motion;
   const PlaneMotion& motion = one.motion;
   PlaneMotion twin = other.motion;
   if (twin.normal.dot(motion.normal) < 0) {

@@ -17,6 +17,7 @@ struct Solution {
   Scales scales;
   double row_delay_s = 0;
   Uncertainty uncertainty;
+  std::optional<PlaneMotion> other = std::nullopt;  ///< the other minimum, if there is one
 };
 
 /// Another solution of the same window.
@@ -35,9 +36,9 @@ std::optional<Solution> solve(const Window& window,
                               const Watch& watch,
                               const Rival& rival = {});
 
-/// Returns the better one of two solutions of a window whose cost has two minima. If the other one
-/// fits as well and is close, the cost between them is flat, and half of the way to it is added to
-/// the uncertainty.
+/// Returns the better one of two solutions of a window whose cost has two minima, with the other
+/// one in `other`. If the other one fits as well and is close, the cost between them is flat, and
+/// half of the way to it is added to the uncertainty.
 Solution better_of_twins(Solution one, Solution other);
 
 }  // namespace gpo::joint

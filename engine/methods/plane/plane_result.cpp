@@ -62,6 +62,13 @@ Initialization with_map_points(const Window& window, Initialization result) {
   return result;
 }
 
+RefusedSolution solution_of(const PlaneMotion& motion) {
+  RefusedSolution solution{{motion.normal, 1}, {}};
+  for (std::size_t i = 0; i < motion.tau.size(); ++i)
+    solution.cameras.push_back({motion.R_wc[i], Eigen::Vector3d::Zero() - motion.tau[i]});  // no -0
+  return solution;
+}
+
 Initialization make_result(const Window& window,
                            const PlaneMotion& motion,
                            const SolverReport& solver) {
@@ -72,9 +79,9 @@ Initialization make_result(const Window& window,
     for (SolverStep& step : result.solver.trace)
       if (step.normal) step.normal = -*step.normal;
   }
-  result.plane = {visible.normal, 1};
-  for (std::size_t i = 0; i < visible.tau.size(); ++i)
-    result.cameras.push_back({visible.R_wc[i], Eigen::Vector3d::Zero() - visible.tau[i]});  // no -0
+  RefusedSolution solution = solution_of(visible);
+  result.plane = solution.plane;
+  result.cameras = std::move(solution.cameras);
   if (!window.planes.empty()) result.planes.push_back({window.leader, result.plane});
   for (const auto& [number, m] : visible.others)
     result.planes.push_back({number, {m.normalized(), 1 / m.norm()}});

@@ -20,6 +20,9 @@ std::vector<MapPoint> lift_to_plane(const Window& window,
 /// Returns the motion over all planes of a result, the main plane first.
 PlaneMotion motion_of(const Initialization& result);
 
+/// Returns plane and cameras of a motion.
+RefusedSolution solution_of(const PlaneMotion& motion);
+
 /// Returns H_i1 = K R_ciw (I - tau_i n^T) K^-1, undistorted, by the pose of camera i.
 Eigen::Matrix3d homography_of(const Window& window, const Pose& pose, const Plane& plane);
 

@@ -352,7 +352,6 @@ void image_alone(const PanelContext& ui, const Rectangle& place) {
 
 void scene_pane(const PanelContext& ui, const Rectangle& place) {
   if (!ui.inspection()) return draw_empty(place, "The scene appears when the window is computed");
-  if (!orientation_settings(ui.state).empty()) return orientations_panel(ui, place);
   const WorkbenchState& state = ui.state;
   const Inspection& inspection = *ui.inspection();
   hit_area("view",

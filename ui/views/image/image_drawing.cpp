@@ -251,7 +251,7 @@ Eigen::AlignedBox2d bounds(const ImageCanvas& canvas, const CubeImage& cube) {
   return box;
 }
 
-void draw_true_cube(const ImageCanvas& canvas, const CubeImage& cube) {
+void draw_dashed_cube(const ImageCanvas& canvas, const CubeImage& cube, std::uint32_t rgb) {
   const float s = overlay_scale();
   const std::array pattern = {7.0 * s, 4.5 * s};
   for (const CubeEdge& edge : cube.edges) {
@@ -260,7 +260,7 @@ void draw_true_cube(const ImageCanvas& canvas, const CubeImage& cube) {
     for (const auto& [start, end] : dashes_along(line, pattern)) {
       const ImVec2 from = to_imgui(start), to = to_imgui(end);
       if (!edge.hidden) canvas.list.AddLine(from, to, imgui_color(Role::background, 0.5), 3.4F * s);
-      canvas.list.AddLine(from, to, imgui_color(Role::truth, edge.hidden ? 0.45 : 1), 1.7F * s);
+      canvas.list.AddLine(from, to, imgui_color(rgb, edge.hidden ? 0.45 : 1), 1.7F * s);
     }
   }
 }

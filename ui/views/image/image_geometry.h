@@ -135,7 +135,8 @@ void draw_body(const ImageCanvas& canvas, const CubeBody& body, bool model);
 /// Returns a box on the screen around all edges.
 Eigen::AlignedBox2d bounds(const ImageCanvas& canvas, const CubeImage& cube);
 
-void draw_true_cube(const ImageCanvas& canvas, const CubeImage& cube);
+/// Draws only edges, dashed.
+void draw_dashed_cube(const ImageCanvas& canvas, const CubeImage& cube, std::uint32_t rgb);
 
 /// Draws the model's triangles in front of the camera from far to near, its points at `points_w`.
 void draw_model(const ImageCanvas& canvas,

@@ -130,12 +130,38 @@ void draw_cube(const Canvas& canvas, const CubeAnchor& anchor) {
   if (body) draw_standing(canvas, cube, anchor);
   if (main && options.show.truth)
     if (const auto truth = true_cube(canvas.inspection, canvas.frame, canvas.cube_size()))
-      draw_true_cube(canvas, *truth);
+      draw_dashed_cube(canvas, *truth, color_of(Role::truth));
   if (!body) draw_wireframe(canvas, cube, cube_color(anchor, *canvas.inspection.window));
 }
 
+/// Returns the solutions of a failure between which the tracks do not decide.
+std::span<const RefusedSolution> undecided(const Inspection& inspection) {
+  const Initialization& failure = *inspection.initialization;
+  if (failure.ok || !failure.ambiguity) return {};
+  return failure.ambiguity->undecided;
+}
+
+/// Draws the cubes on both planes of an ambiguous window, at the same place of the reference image.
+void draw_undecided_cubes(const Canvas& canvas) {
+  bool dashed = false;
+  for (const RefusedSolution& one : undecided(canvas.inspection)) {
+    const auto anchor =
+        place_cube(one.plane, Pose{}, *canvas.inspection.recording, *canvas.inspection.window, {});
+    if (!anchor) continue;
+    const auto [chosen, height_sides] = canvas.cube_size();
+    const double side = chosen > 0 ? chosen : default_cube_side(*anchor);
+    const auto corners = cube_corners(*anchor, side, height_sides);
+    const CubeImage cube = cube_in_image(canvas.rolling(), one.cameras[canvas.frame], corners);
+    if (dashed)
+      draw_dashed_cube(canvas, cube, color_of(Role::warning));
+    else
+      draw_wireframe(canvas, cube, color_of(Role::bad));
+    dashed = true;
+  }
+}
+
 void draw_cubes(const Canvas& canvas) {
-  if (!canvas.inspection.initialization->ok) return;
+  if (!canvas.inspection.initialization->ok) return draw_undecided_cubes(canvas);
   for (const CubeAnchor& anchor : cubes_far_to_near(canvas.inspection, canvas.frame))
     draw_cube(canvas, anchor);
 }
@@ -204,6 +230,10 @@ LegendRows legend_rows(const Canvas& canvas) {
   if (!horizon(canvas).empty()) add(Sign::line, Role::gravity, "horizon", "gravity");
   if (!options.show.cube && inspection.cube) hidden("cube", "cube");
   if (!options.show.cube) return rows;
+  if (!undecided(inspection).empty()) {
+    add(Sign::square, Role::bad, "cube on one plane that fits, solid", "cube");
+    add(Sign::square, Role::warning, "cube on the other plane, dashed", "cube");
+  }
   const bool truth = true_cube(inspection, canvas.frame, canvas.cube_size()).has_value();
   if (inspection.cube)
     rows.push_back({Sign::square,

@@ -278,8 +278,9 @@ Json report_scene(const Inspection& inspection) {
     add_plane_items(items, PlanePainter(inspection), *grid);
     add_point_items(items, inspection);
     add_cube_items(items, inspection);
-  } else if (const auto patch = refused_patch(inspection)) {
-    items.line("grid", {patch->corners.begin(), patch->corners.end()}, true, css_color(Role::bad));
+  } else {
+    for (const auto& [number, normal, corners, points] : refused_patches(inspection))
+      items.line("grid", {corners.begin(), corners.end()}, true, css_color(Role::bad));
   }
   add_camera_items(items, inspection);
   add_truth_items(items, inspection, grid ? &*grid : nullptr);

@@ -306,7 +306,7 @@ Line scene_extent(const Inspection& inspection, double cube_side) {
   add_frusta(inspection, extent);
   for (int axis = 0; axis < 3; ++axis)
     extent.push_back(axes_length(inspection) * Vector3d::Unit(axis));
-  if (const auto patch = refused_patch(inspection)) add(patch->corners);
+  for (const PlanePatch& patch : refused_patches(inspection)) add(patch.corners);
   if (!inspection.initialization->ok) return extent;
   const PlaneGrid grid = plane_grid(inspection, cube_side);
   add(grid.corners());

@@ -286,8 +286,8 @@ void build(const SceneStage& stage, bool above) {
   if (inspection.initialization->ok) grid = plane_grid(inspection, stage.side());
   if (stage.options.show.truth) add_truth(stage, grid);
   if (!grid) {
-    if (const auto patch = refused_patch(inspection))
-      stage.add_polygon(patch->corners, color_of(Role::bad), 0.08, color_of(Role::bad));
+    for (const PlanePatch& patch : refused_patches(inspection))
+      stage.add_polygon(patch.corners, color_of(Role::bad), 0.08, color_of(Role::bad));
     add_cameras(stage);
     return;
   }
