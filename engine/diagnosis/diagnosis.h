@@ -22,6 +22,10 @@ enum class Of {
   inspection  ///< what only an inspection knows: ground truth, requested points, settings
 };
 
+template <>
+struct ChoiceKeys<Of>
+    : NamedKeys<"scope", "recording", "window", "growing window", "result", "inspection"> {};
+
 /// A row of the table of checks.
 struct Check {
   const char* key;
