@@ -30,8 +30,8 @@ std::vector<FindingRow> finding_rows(const Inspection* inspection) {
 }
 
 bool is_said_by(std::span<const FindingRow> rows, const std::string& reason) {
-  return std::ranges::any_of(
-      rows, [&](const FindingRow& row) { return text_of(row.finding) == reason; });
+  return std::ranges::any_of(rows,
+                             [&](const FindingRow& row) { return text_of(row.finding) == reason; });
 }
 
 }  // namespace gpo

@@ -304,8 +304,7 @@ void draw_verdict(const PanelContext& ui, const Initialization& result, const Ro
   }
   ImGui::PopFont();
   ImGui::PushFont(font(Font::small));
-  const std::string& reason =
-      result.ok || result.reason.empty() ? verdict.reason : result.reason;
+  const std::string& reason = result.ok || result.reason.empty() ? verdict.reason : result.reason;
   if (!is_said_by(finding_rows(ui.inspection()), reason)) wrapped_text(reason, place.right);
   ImGui::PopFont();
   ImGui::EndGroup();

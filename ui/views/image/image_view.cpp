@@ -150,8 +150,7 @@ Outlines horizon(const Canvas& canvas) {
 /// Returns whether to show the principal point, because a finding doubts it.
 bool doubts_principal_point(const Inspection& inspection) {
   const Finding* finding = find_finding(inspection.findings, "implausible-intrinsics");
-  const Camera& camera = inspection.recording->camera;
-  return finding != nullptr && !finding->ignored && std::isfinite(camera.cx + camera.cy);
+  return finding != nullptr && !finding->ignored;
 }
 
 /// Draws the principal point as a large cross, and a line to the image center.
