@@ -7,7 +7,7 @@
 namespace gpo {
 namespace {
 
-Role role_of(const Finding& finding) {
+Role color_of_level(const Finding& finding) {
   if (finding.ignored) return Role::text_dim;
   if (finding.level == Level::note) return Role::text;
   return finding.level == Level::weak ? Role::warning : Role::bad;
@@ -22,7 +22,7 @@ std::vector<FindingRow> finding_rows(const Inspection* inspection) {
     const auto check = std::ranges::find(checks(), finding.key, &Check::key);
     rows.push_back({.finding = finding,
                     .word = finding.ignored ? "ignored" : to_string(finding.level),
-                    .color = role_of(finding),
+                    .color = color_of_level(finding),
                     .title = check == checks().end() ? "" : check->title,
                     .may_be_ignored = check != checks().end() && check->may_be_ignored});
   }
