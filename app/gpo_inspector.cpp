@@ -18,7 +18,8 @@ constexpr gpo::CommandRow kCommands[] = {{"info", gpo::add_info},
                                          {"convert", gpo::add_convert},
                                          {"record", gpo::add_record},
                                          {"run", gpo::add_run, true},
-                                         {"synthesize", gpo::add_synthesize}};
+                                         {"synthesize", gpo::add_synthesize},
+                                         {"findings", gpo::add_findings}};
 
 bool runs_here(std::string_view word) {
   return word == "--version" ||

@@ -48,11 +48,14 @@ void use_theme(Theme theme, Gui& gui, Views& views) {
   views.window = WindowImage();
 }
 
-void forget_hover(const PanelContext& ui, const Rectangle& views) {
+/// Only the views and the findings below the verdict have something to hover over.
+void forget_hover(const PanelContext& ui, const WindowLayout& layout) {
   const ImVec2 at = ImGui::GetIO().MousePos;
-  const bool outside =
-      at.x < views.x || at.x >= views.right() || at.y < views.y || at.y >= views.bottom();
-  if (outside && ui.state.hover != Hover{}) push(ui.commands, HoverOver{});
+  const auto is_in = [&](const Rectangle& part) {
+    return at.x >= part.x && at.x < part.right() && at.y >= part.y && at.y < part.bottom();
+  };
+  if (!is_in(layout.views) && !is_in(layout.verdict) && ui.state.hover != Hover{})
+    push(ui.commands, HoverOver{});
 }
 
 void draw_overlays(const PanelContext& ui, const Rectangle& window) {
@@ -93,7 +96,7 @@ void draw_panels(PanelContext ui, cv::Size size) {
   if (!layout.timeline.empty()) timeline_panel(ui, layout.timeline);
   status_line(ui, layout.status);
   splitters(ui, layout);
-  forget_hover(ui, layout.views);
+  forget_hover(ui, layout);
   draw_overlays(ui, window);
   context_menu(ui);
 }

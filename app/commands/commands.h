@@ -49,6 +49,7 @@ int main_with_errors(int argc, char** argv, std::span<const CommandRow> rows);
 RunCommand add_calibrate(CLI::App& app);
 RunCommand add_convert(CLI::App& app);
 RunCommand add_evaluate(CLI::App& app);
+RunCommand add_findings(CLI::App& app);
 RunCommand add_info(CLI::App& app);
 RunCommand add_pages(CLI::App& app);  ///< for packagers, not listed in --help
 RunCommand add_record(CLI::App& app);

@@ -192,6 +192,7 @@ std::span<const CommandRow> all_commands() {
                                          {"evaluate", add_evaluate, true},
                                          {"calibrate", add_calibrate},
                                          {"synthesize", add_synthesize},
+                                         {"findings", add_findings},
                                          {"pages", add_pages}};
   return kRows;
 }

@@ -22,6 +22,10 @@ enum class Of {
   inspection  ///< ground truth, requested points and settings of an inspection
 };
 
+template <>
+struct ChoiceKeys<Of>
+    : NamedKeys<"scope", "recording", "window", "growing window", "result", "inspection"> {};
+
 /// A row of the table of checks.
 struct Check {
   const char* key;

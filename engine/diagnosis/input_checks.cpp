@@ -43,14 +43,19 @@ std::optional<double> resize_of(const Camera& camera) {
   return scale;
 }
 
-Findings weak(std::string sentence, std::string advice) {
-  return {{.level = Level::weak, .sentence = std::move(sentence), .advice = std::move(advice)}};
+Findings weak(std::string sentence, std::string advice, std::string command = "") {
+  return {{.level = Level::weak,
+           .sentence = std::move(sentence),
+           .advice = std::move(advice),
+           .command = std::move(command),
+           .view = "camera"}};
 }
 
 }  // namespace
 
 Findings guessed_camera(const Evidence& e) {
-  return e.camera_is_guess ? weak("the camera is a guess", "calibrate it") : Findings{};
+  return e.camera_is_guess ? weak("the camera is a guess", "calibrate it", "calibrate")
+                           : Findings{};
 }
 
 Findings interlaced(const Evidence& e) {
@@ -76,7 +81,10 @@ Findings implausible_intrinsics(const Evidence& e) {
                             c.height / *scale,
                             c.width,
                             c.height),
-                fmt::format("multiply fx, fy, cx and cy by {:.4g}", *scale));
+                fmt::format("multiply fx, fy, cx and cy of the calibration by {:.4g} (setting "
+                            "intrinsics_scale)",
+                            *scale * e.intrinsics_scale),
+                fmt::format("set intrinsics_scale {:.4g}", *scale * e.intrinsics_scale));
   constexpr const char* kCheck = "check the order of fx, fy, cx, cy and the size of the images";
   if (!(std::max(std::abs(x - 0.5), std::abs(y - 0.5)) <= kMostOffCenter))
     return weak(fmt::format("the principal point ({:.1f}, {:.1f}) is at {:.0f} % of the width and "

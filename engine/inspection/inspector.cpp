@@ -92,6 +92,24 @@ Sources sources_of(const Recording& recording,
   return sources;
 }
 
+/// Returns the camera of images that were resized by this factor after its calibration.
+Camera with_scaled_intrinsics(Camera camera, double scale) {
+  camera.fx *= scale;
+  camera.fy *= scale;
+  camera.cx = (camera.cx + 0.5) * scale - 0.5;  // the first pixel's center is 0
+  camera.cy = (camera.cy + 0.5) * scale - 0.5;
+  if (camera.covariance.empty()) {
+    for (std::size_t k = 0; k < std::min<std::size_t>(4, camera.sigmas.size()); ++k)
+      camera.sigmas[k] *= scale;
+  } else {
+    Eigen::MatrixXd covariance = from_upper_triangle(camera.covariance);
+    covariance.topRows<4>() *= scale;
+    covariance.leftCols<4>() *= scale;
+    set_lens_covariance(camera, covariance);
+  }
+  return camera;
+}
+
 /// Adds the verdicts of the growing window, judged by its findings.
 void add_growth(const Window& window,
                 std::span<const Verdict> numbers,
@@ -149,7 +167,8 @@ struct Request {
 /// The cached stages; each `update` returns false if stopped. The key of a stage is the settings
 /// that act until then (`acting_until`), so a setting's row decides which stages it recomputes.
 struct Inspector::Stages {
-  std::shared_ptr<const Recording> recording;
+  std::shared_ptr<const Recording> recording;  // with the camera of `intrinsics_scale`
+  double intrinsics_scale = 1;
   std::array<Cached<FrameSpan, Tracked>, 2> longest_tracks;  // for windows from one start
   Cached<FrameSpan, std::shared_ptr<const WindowTruth>> longest_truth;
   Cached<Settings, std::shared_ptr<const Tracks>> tracks;
@@ -306,6 +325,7 @@ struct Inspector::Stages {
 
   Evidence evidence(const std::vector<Remark>& remarks) const {
     Evidence known = evidence_of(*recording);
+    known.intrinsics_scale = intrinsics_scale;
     known.remarks = remarks;
     known.tracks = tracks.value.get();
     known.ids = tracks.value->ids;
@@ -351,25 +371,38 @@ struct Inspector::Stages {
 };
 
 Inspector::Inspector(std::shared_ptr<const Recording> recording)
-    : stages_(std::make_unique<Stages>()) {
-  stages_->recording = std::move(recording);
-}
+    : Inspector(std::move(recording), nullptr) {}
 
 Inspector::Inspector(std::shared_ptr<const Recording> recording,
                      std::shared_ptr<const Tracks> tracks)
-    : Inspector(std::move(recording)) {
-  const Tracking tracking = tracks->anchored ? Tracking::anchored : Tracking::frame_to_frame;
-  auto& cached = stages_->longest_tracks[static_cast<std::size_t>(tracking)];
-  cached.key = FrameSpan{tracks->start, tracks->frame_count()};
-  cached.value.milliseconds.assign(tracks->raw_px.size(), 0);
-  cached.value.tracks = std::move(tracks);
-}
+    : recording_(std::move(recording)), tracks_(std::move(tracks)), stages_(new_stages(1)) {}
 
 Inspector::~Inspector() = default;
+
+/// Even the tracks depend on the camera.
+std::unique_ptr<Inspector::Stages> Inspector::new_stages(double intrinsics_scale) const {
+  auto stages = std::make_unique<Stages>();
+  stages->recording = recording_;
+  stages->intrinsics_scale = intrinsics_scale;
+  if (intrinsics_scale != 1) {
+    Recording scaled = *recording_;
+    scaled.camera = with_scaled_intrinsics(scaled.camera, intrinsics_scale);
+    stages->recording = std::make_shared<const Recording>(std::move(scaled));
+  }
+  if (!tracks_) return stages;
+  const Tracking tracking = tracks_->anchored ? Tracking::anchored : Tracking::frame_to_frame;
+  auto& cached = stages->longest_tracks[static_cast<std::size_t>(tracking)];
+  cached.key = FrameSpan{tracks_->start, tracks_->frame_count()};
+  cached.value.milliseconds.assign(tracks_->raw_px.size(), 0);
+  cached.value.tracks = tracks_;
+  return stages;
+}
 
 std::shared_ptr<const Inspection> Inspector::inspect(const Settings& settings,
                                                      const std::stop_token& stop,
                                                      const Progress& progress) {
+  if (settings.intrinsics_scale != stages_->intrinsics_scale)
+    stages_ = new_stages(settings.intrinsics_scale);
   Stages& stages = *stages_;
   const Request request{settings, stop, progress};
   check_window(*stages.recording, settings);

@@ -91,6 +91,10 @@ class Inspector {
 
  private:
   struct Stages;
+  std::unique_ptr<Stages> new_stages(double intrinsics_scale) const;
+
+  std::shared_ptr<const Recording> recording_;
+  std::shared_ptr<const Tracks> tracks_;  ///< given ones; null: none
   std::unique_ptr<Stages> stages_;
 };
 

@@ -146,5 +146,18 @@ TEST(TruthOfPeople, ShowsErrorsThatContradictTheResult) {
   EXPECT_TRUE(finding(result, "truth-conventions").is_null());
 }
 
+TEST(ResizedImages, AreSolvedByTheCommandOfTheFinding) {
+  const fs::path path = shared("cases") / "intrinsics-of-another-size";
+  SKIP_WITHOUT(path);
+  const json wrong = run_json("{} --frames 20", path);
+  EXPECT_EQ(wrong["verdict"]["readiness"], "weak");
+  ASSERT_EQ(wrong["findings"][0]["key"], "implausible-intrinsics");
+  EXPECT_EQ(wrong["findings"][0]["command"], "set intrinsics_scale 0.75");
+  const json right = run_json("{} --frames 20 --intrinsics-scale 0.75", path);
+  EXPECT_EQ(right["verdict"]["readiness"], "ready");
+  EXPECT_LT(right["metrics"]["pne_deg"].get<double>(), 0.2);
+  EXPECT_NEAR(right["camera"]["intrinsics"][2].get<double>(), 241.75, 1e-9);
+}
+
 }  // namespace
 }  // namespace gpo::test

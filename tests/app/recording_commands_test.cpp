@@ -4,6 +4,7 @@
 #include "tests/app/program.h"
 #include "tests/engine/synthesis/small_recipe.h"
 
+#include <algorithm>
 #include <cmath>
 #include <sstream>
 
@@ -309,6 +310,16 @@ TEST(RecipeAsRecording, BrokenRecipeIsRefusedWithOneLine) {
                    "brokentest.yaml:27: key `gyroscope.rate`: found \"fast\"");
   EXPECT_TRUE(recordings_of("brokentest").empty());
   EXPECT_EQ(program("info {}", recipe.parent_path() / "none.yaml").exit_code, 2);
+}
+
+TEST(Findings, AreListedAsTextAndJson) {
+  EXPECT_THAT(succeeding("findings").out, HasSubstr("Implausible focal length or principal point"));
+  const json listed = json::parse(succeeding("findings --json").out)["findings"];
+  const auto row = std::ranges::find_if(
+      listed, [](const json& one) { return one["key"] == "implausible-intrinsics"; });
+  ASSERT_NE(row, listed.end());
+  EXPECT_EQ((*row)["looks_at"], "recording");
+  EXPECT_EQ((*row)["may_be_ignored"], true);
 }
 
 }  // namespace

@@ -66,7 +66,7 @@ TEST_F(LargeText, ReachesEveryPaneByTabsOrTheirList) {
 TEST_F(LargeText, HelpIsNotWiderThanItsWindow) {
   state_.view.show_help = true;
   for (const HelpPage page :
-       {HelpPage::keys, HelpPage::glossary, HelpPage::manual, HelpPage::about}) {
+       {HelpPage::keys, HelpPage::glossary, HelpPage::manual, HelpPage::findings, HelpPage::about}) {
     state_.view.help_page = page;
     draw_times(4);
     const ImGuiWindow* help = ImGui::FindWindowByName("keys");

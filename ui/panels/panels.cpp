@@ -168,6 +168,10 @@ Highlight highlight_of(const WorkbenchState& state) {
   const Tracks& tracks = *state.results.inspection->tracks;
   for (const std::int64_t id : state.selection.tracks)
     if (const auto column = column_of(tracks, id)) highlight.picked.push_back(*column);
+  for (const Finding& finding : state.results.inspection->findings)
+    if (finding.key == state.hover.finding)
+      for (const std::int64_t id : tracks_of({&finding, 1}, tracks))
+        highlight.picked.push_back(*column_of(tracks, id));
   if (state.selection.focus) highlight.focus = column_of(tracks, *state.selection.focus);
   if (state.hover.track) highlight.hovered = column_of(tracks, *state.hover.track);
   if (state.hover.camera) highlight.camera = *state.hover.camera - tracks.start;

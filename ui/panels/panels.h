@@ -212,6 +212,9 @@ using DrawPanel = void(const PanelContext& ui, const Rectangle& place);
 DrawPanel settings_panel, results_panel, image_panel, timeline_panel, status_line, empty_panel;
 /// The verdict with its reason, and ways out of a failure.
 DrawPanel verdict_panel, failure_banner;
+/// The findings below the verdict, between two places [px from the panel's left edge]; nothing if
+/// there are none.
+void findings_group(const PanelContext& ui, float left, float right);
 /// State of a live source: what its window lacks to be ready, and how many images were dropped.
 DrawPanel live_banner;
 /// Both answers of an ambiguous window side by side, or one above the other.

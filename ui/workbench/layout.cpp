@@ -90,7 +90,7 @@ void put_column(WindowLayout& layout, Rectangle column, float scale, const Layou
   const float verdict =
       input.verdict_height > 0 ? input.verdict_height : scaled(kVerdictHeight, scale);
   layout.verdict = {
-      column.x, column.y, column.width, std::round(std::min(verdict, column.height * 0.3F))};
+      column.x, column.y, column.width, std::round(std::min(verdict, column.height * 0.4F))};
   column.y += layout.verdict.height;
   column.height -= layout.verdict.height;
   const float content =

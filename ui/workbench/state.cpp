@@ -164,6 +164,17 @@ std::optional<int> to_main_plane(const Inspection& inspection, std::int64_t id) 
   return plane && *plane != window.leader ? std::optional(*plane + 1) : std::nullopt;
 }
 
+std::vector<std::int64_t> tracks_of(std::span<const Finding> findings, const Tracks& tracks) {
+  std::vector<std::int64_t> ids;
+  for (const Finding& finding : findings)
+    std::ranges::copy_if(finding.tracks, std::back_inserter(ids), [&](std::int64_t id) {
+      return column_of(tracks, id).has_value();
+    });
+  std::ranges::sort(ids);
+  ids.erase(std::unique(ids.begin(), ids.end()), ids.end());
+  return ids;
+}
+
 std::optional<int> column_of(const Tracks& tracks, std::int64_t id) {
   const auto found = std::ranges::find(tracks.ids, id);
   if (found == tracks.ids.end()) return std::nullopt;
@@ -216,6 +227,11 @@ Settings end_window_at(Settings settings, int frame, int frame_count) {
   settings.start = std::max(settings.start, end - kLongestWindow);
   settings.frames = end - settings.start;
   return fit_window(settings, frame_count);
+}
+
+const std::shared_ptr<const Recording>& shown_recording(const WorkbenchState& state) {
+  const auto& inspection = state.results.inspection;
+  return state.document.recording && inspection ? inspection->recording : state.document.recording;
 }
 
 bool is_frozen(const WorkbenchState& state) {

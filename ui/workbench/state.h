@@ -74,6 +74,7 @@ Selection inverted(const Selection& selection, std::span<const std::int64_t> all
 struct Hover {
   std::optional<std::int64_t> track = std::nullopt;
   std::optional<int> camera = std::nullopt;  ///< frame, counts in the recording
+  std::string finding = {};                  ///< key; empty: none
 
   bool operator==(const Hover&) const = default;
 };
@@ -148,7 +149,7 @@ struct Document : UndoStep {
   std::string model;    ///< instead of the cube: "robot", a file; empty: none
 };
 
-enum class HelpPage { keys, glossary, manual, about };
+enum class HelpPage { keys, glossary, manual, findings, about };
 
 struct ViewState {
   int frame = 0;  ///< counts in the recording
@@ -300,6 +301,9 @@ std::vector<std::int64_t> tracks_within(const WorkbenchState& state,
 /// Returns the setting `plane` that makes the track's plane leading; nullopt if on no other plane.
 std::optional<int> to_main_plane(const Inspection& inspection, std::int64_t id);
 
+/// Returns the ids of the findings' tracks that are among the tracks, ascending.
+std::vector<std::int64_t> tracks_of(std::span<const Finding> findings, const Tracks& tracks);
+
 /// Column in the window of the track with this id; nullopt if the window has no such track.
 std::optional<int> column_of(const Tracks& tracks, std::int64_t id);
 
@@ -338,6 +342,10 @@ std::vector<Settings> wanted_inspections(const WorkbenchState& state);
 inline bool wants_report(const WorkbenchState& state) {
   return std::ranges::count(state.requests.screenshots, kReportView, &Screenshot::view) > 0;
 }
+
+/// Returns the open recording, with the camera of the latest inspection if there is one: it differs
+/// by the setting `intrinsics_scale`. Null if none is open.
+const std::shared_ptr<const Recording>& shown_recording(const WorkbenchState& state);
 
 /// Returns whether the open recording was made by freezing a live source.
 bool is_frozen(const WorkbenchState& state);

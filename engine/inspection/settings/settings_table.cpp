@@ -198,6 +198,16 @@ void add_inlier_rows(std::vector<Setting>& rows) {
 }
 
 void add_exception_rows(std::vector<Setting>& rows) {
+  rows.push_back(row([](auto& s) -> auto& { return s.intrinsics_scale; },
+                     {.key = "intrinsics_scale",
+                      .title = "Camera scale",
+                      .help = "Factor for the calibration's focal lengths and principal point, if "
+                              "the images were resized after it",
+                      .least = 0.05,
+                      .most = 20,
+                      .stage = SettingStage::tracks,
+                      .advanced = true,
+                      .by_hand = true}));
   rows.push_back(row([](auto& s) -> auto& { return s.exclude; },
                      {.key = "exclude",
                       .title = "Excluded",
@@ -215,8 +225,8 @@ void add_exception_rows(std::vector<Setting>& rows) {
   rows.push_back(row([](auto& s) -> auto& { return s.options.ignore_findings; },
                      {.key = "ignore_findings",
                       .title = "Ignored findings",
-                      .help = "Keys of findings that do not lower the verdict, with commas; "
-                              "`findings` lists them",
+                      .help = "Keys of findings that do not lower the verdict, with commas; see "
+                              "`gpo-inspector findings`",
                       .stage = SettingStage::initialization,
                       .advanced = true,
                       .by_hand = true}));

@@ -77,6 +77,7 @@ struct Settings {
   int start = 0;                            ///< reference frame, counts in the recording
   int frames = 30;                          ///< length of the window
   Tracking tracking = Tracking::anchored;   ///< by the built-in front end
+  double intrinsics_scale = 1;              ///< for images resized after the calibration
   std::vector<std::int64_t> exclude = {};   ///< ids of excluded tracks, ascending
   Masks mask = {};                          ///< areas of the reference frame
   PointPair scale_points = {};              ///< `scale_length` apart, see `measure_scale`

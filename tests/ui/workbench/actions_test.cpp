@@ -69,7 +69,7 @@ TEST(Panes, TwoDrawersAreOpenSideBySide) {
 
 TEST(Help, HasPagesAndATourOfThreeSteps) {
   WorkbenchState state;
-  for (const char* page : {"help", "glossary", "manual", "about"}) {
+  for (const char* page : {"help", "glossary", "manual", "findings", "about"}) {
     run_line(state, page);
     EXPECT_TRUE(state.view.show_help && action_named(page).checked(state)) << page;
   }

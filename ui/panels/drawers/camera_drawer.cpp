@@ -89,7 +89,7 @@ void draw_calibration(const PanelContext& ui, const CalibrationResult& calibrati
 }  // namespace
 
 void camera_drawer(const PanelContext& ui, const Rectangle& place) {
-  const auto& recording = ui.state.document.recording;
+  const auto& recording = shown_recording(ui.state);
   if (!recording) return draw_empty(place, "Camera and sensors appear when a recording is open");
   const float s = ui.scale;
   auto& cached = ui.views.recording_groups;

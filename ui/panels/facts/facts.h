@@ -55,6 +55,19 @@ std::vector<std::vector<Vector2d>> distortion_grid(const Camera& camera, int cel
 /// Returns the results (null: none yet), times only with `timings`. `side`: cube's; 0: default.
 std::vector<ResultGroup> result_groups(const Inspection* inspection, bool timings, double side = 0);
 
+/// One row of the findings on a window.
+struct FindingRow {
+  Finding finding;
+  std::string word = {};  ///< its level, or "ignored"
+  Role color = Role::text;
+  std::string title = {};  ///< of its check
+  bool may_be_ignored = false;
+};
+/// Returns the findings (null: none yet), the heaviest first.
+std::vector<FindingRow> finding_rows(const Inspection* inspection);
+/// Returns whether a row has the same text as the verdict's reason.
+bool is_said_by(std::span<const FindingRow> rows, const std::string& reason);
+
 /// Returns a solver's iterations; with those of discarded attempts, which no curve shows: "42 of
 /// 110".
 std::string iterations_text(const SolverReport& solver);

@@ -1,6 +1,6 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-// Keys, glossary, manual and version in front of the window, and the tour.
+// Keys, glossary, manual, checks and version in front of the window, and the tour.
 #include "engine/version.h"
 #include "ui/panels/panels.h"
 
@@ -72,6 +72,16 @@ std::vector<KeyRow> glossary_rows() {
   return rows;
 }
 
+std::vector<KeyRow> rows_of_checks() {
+  std::vector<KeyRow> rows;
+  for (const Check& check : checks())
+    rows.push_back({.keys = check.key,
+                    .title = check.title,
+                    .value = check.may_be_ignored ? "may be ignored" : "",
+                    .tooltip = std::string("Looks at: ") + to_string(check.of)});
+  return rows;
+}
+
 /// `columns`: 2 without the values. `wrap_px`: width of the wrapped column.
 void draw_help_row(const KeyRow& row, int columns, float wrap_px) {
   ImGui::TableNextColumn();
@@ -125,7 +135,7 @@ void dim_window(const Rectangle& window, Commands& commands) {
 }
 
 void draw_title(const PanelContext& ui) {
-  for (const char* name : {"help", "glossary", "manual", "about"}) {
+  for (const char* name : {"help", "glossary", "manual", "findings", "about"}) {
     const Action& action = action_named(name);
     const bool open = action.checked(ui.state);
     if (open) text_in(Font::heading, color_of(Role::text), action.title);
@@ -244,6 +254,7 @@ void help_overlay(const PanelContext& ui, const Rectangle& window) {
   if (page == HelpPage::keys) draw_halves(key_rows(ui.state), 3, s);
   if (page == HelpPage::glossary) draw_halves(glossary_rows(), 2, s);
   if (page == HelpPage::manual) draw_manual(ui);
+  if (page == HelpPage::findings) draw_halves(rows_of_checks(), 3, s);
   if (page == HelpPage::about) draw_about();
   ImGui::PopID();
   ImGui::End();

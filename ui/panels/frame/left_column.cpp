@@ -304,7 +304,8 @@ void draw_verdict(const PanelContext& ui, const Initialization& result, const Ro
   }
   ImGui::PopFont();
   ImGui::PushFont(font(Font::small));
-  wrapped_text(result.ok || result.reason.empty() ? verdict.reason : result.reason, place.right);
+  const std::string& reason = result.ok || result.reason.empty() ? verdict.reason : result.reason;
+  if (!is_said_by(finding_rows(ui.inspection()), reason)) wrapped_text(reason, place.right);
   ImGui::PopFont();
   ImGui::EndGroup();
   if (judged) tooltip("Verdict on the window: " + verdict_text(verdict));
@@ -357,6 +358,7 @@ void verdict_panel(const PanelContext& ui, const Rectangle& place) {
     draw_verdict(ui, *result, rows);
   else
     text_in(Font::heading, color_of(Role::text_dim), "\u2013");
+  findings_group(ui, rows.left, rows.right);
   ui.views.verdict_height = std::round(ImGui::GetCursorPosY() + 4 * s);
 }
 

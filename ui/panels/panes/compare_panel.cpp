@@ -125,7 +125,7 @@ Rectangle to_rectangle(const ScreenRect& rect) {
 
 /// Zooms all columns. A double click shows the whole image, or again the surroundings of the cubes.
 void zoom_and_pan(const PanelContext& ui, const ScreenRect& rect, const ImageZoom& zoom) {
-  const Camera& camera = ui.state.document.recording->camera;
+  const Camera& camera = shown_recording(ui.state)->camera;
   if (const double by = wheel_zoom(); by != 1)
     push(ui.commands, ZoomCompare{zoom_about(zoom, camera, rect, mouse_px(), by)});
   const Vector2d drag = drag_px();
@@ -176,7 +176,7 @@ ScreenRect draw_caption(const PanelContext& ui, const Rectangle& place, ImDrawLi
 void draw_columns(const PanelContext& ui, int frame, const ScreenRect& visible) {
   constexpr double kLeastHeight = 190, kLeastRow = 290;  // a single row, each of several [px]
   const WorkbenchState& state = ui.state;
-  const Recording& recording = *state.document.recording;
+  const Recording& recording = *shown_recording(state);
   const std::vector<Compared> columns = compared_results(state);
   const int count = static_cast<int>(columns.size());
   const int rows = (count + 3) / 4;
@@ -217,7 +217,7 @@ void compare_alone(const PanelContext& ui, const Rectangle& place) {
   draw_compare_view(
       {*ImGui::GetBackgroundDrawList(), screen_rect(place)},
       compared_results(ui.state),
-      CompareFrame{*ui.state.document.recording, frame, shown_image(ui.views), options});
+      CompareFrame{*shown_recording(ui.state), frame, shown_image(ui.views), options});
 }
 
 void compare_panel(const PanelContext& ui, const Rectangle& place) {

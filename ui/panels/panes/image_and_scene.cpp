@@ -137,7 +137,7 @@ void zoom_and_pan(const Pointer& pointer) {
                           drag_cube(pointer.ui, pointer.frame, pointer.mapping);
   const WorkbenchState& state = pointer.ui.state;
   const ImageZoom& zoom = state.view.image_zoom;
-  const ShownImage image = as_shown(*state.document.recording);
+  const ShownImage image = as_shown(*shown_recording(state));
   const auto change = [&](const ImageZoom& to) { push(pointer.ui.commands, ZoomImage{to}); };
   if (const double by = wheel_zoom(); by != 1)
     change(zoom_about(zoom, image, pointer.rect, pointer.at, by));
@@ -215,7 +215,7 @@ void open_menu(const Pointer& pointer, std::optional<std::int64_t> track) {
 void draw_overlays(const Pointer& pointer, const Rectangle& place, ImDrawList& list) {
   const PanelContext& ui = pointer.ui;
   const WorkbenchState& state = ui.state;
-  const Camera& camera = state.document.recording->camera;
+  const Camera& camera = shown_recording(state)->camera;
   const Inspection* inspection = ui.inspection();
   const Inspection waiting = inspection ? Inspection{} : nothing_to_show(state.document.recording);
   ViewOptions options = view_options(ui, ui.views);
@@ -249,7 +249,7 @@ void draw_panel(const PanelContext& ui, const Rectangle& place) {
                ImGuiButtonFlags_MouseButtonRight);
   const ScreenRect rect = screen_rect(place);
   const ViewState& view = state.view;
-  const ShownImage image = as_shown(*state.document.recording);
+  const ShownImage image = as_shown(*shown_recording(state));
   const Pointer pointer{
       ui, frame, rect, map_image(image, rect, view.image_zoom, view.toggles.undistorted)};
   zoom_and_pan(pointer);

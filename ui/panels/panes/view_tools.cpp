@@ -150,7 +150,7 @@ bool takes_mask(const WorkbenchState& state, int frame) {
 
 void draw_mask_by_mouse(const PanelContext& ui, const ImageMapping& mapping) {
   if (!ImGui::IsItemDeactivated() || !ImGui::IsMouseReleased(ImGuiMouseButton_Left)) return;
-  const Camera& camera = ui.state.document.recording->camera;
+  const Camera& camera = shown_recording(ui.state)->camera;
   Mask mask = *ui.state.view.drawn_mask;
   const Vector2d at = mouse_px();
   const ImVec2& pressed = ImGui::GetIO().MouseClickedPos[ImGuiMouseButton_Left];
@@ -167,7 +167,7 @@ void draw_mask_by_mouse(const PanelContext& ui, const ImageMapping& mapping) {
 }
 
 void draw_unfinished_mask(const PanelContext& ui, const Area& area, const ImageMapping& mapping) {
-  const Camera& camera = ui.state.document.recording->camera;
+  const Camera& camera = shown_recording(ui.state)->camera;
   Mask mask = *ui.state.view.drawn_mask;
   const ImageCanvas canvas{area, camera, mapping};
   const bool dragged = ImGui::IsItemActive() && !is_click(ui.scale) && mask.corners_raw_px.empty();

@@ -173,6 +173,27 @@ Outlines horizon(const Canvas& canvas) {
   return horizon_in_image(canvas.rolling(), canvas.pose(), -inspection.inertial->gravity_m_s2);
 }
 
+/// Returns whether to show the principal point, because a finding doubts it.
+bool doubts_principal_point(const Inspection& inspection) {
+  const Finding* finding = find_finding(inspection.findings, "implausible-intrinsics");
+  return finding != nullptr && !finding->ignored;
+}
+
+/// Draws the principal point as a large cross, and a line to the image center.
+void draw_principal_point(const Canvas& canvas) {
+  const Camera& camera = canvas.camera;
+  const float s = overlay_scale(), arm = 9 * s;
+  const ImVec2 p = canvas.at({camera.cx, camera.cy});
+  const ImVec2 center = canvas.at({0.5 * (camera.width - 1), 0.5 * (camera.height - 1)});
+  for (const auto& [color, width] : {std::pair{imgui_color(Role::background, 0.6), 3.0F * s},
+                                     {imgui_color(Role::warning), 0.0F}}) {
+    canvas.list.AddLine(p, center, color, 1.4F * s + width);
+    canvas.list.AddLine({p.x - arm, p.y - arm}, {p.x + arm, p.y + arm}, color, 2.4F * s + width);
+    canvas.list.AddLine({p.x - arm, p.y + arm}, {p.x + arm, p.y - arm}, color, 2.4F * s + width);
+  }
+  draw_sign(canvas.list, Sign::disc, center, color_of(Role::text));
+}
+
 LegendRows track_rows(const Canvas& canvas) {
   const Inspection& inspection = canvas.inspection;
   const Window& window = *inspection.window;
@@ -227,6 +248,10 @@ LegendRows legend_rows(const Canvas& canvas) {
         fmt::format("residuals × {:g}", kResidualMagnification),
         "residuals");
   if (ok && !options.show.residuals) hidden("residuals", "residuals");
+  if (doubts_principal_point(inspection)) {
+    add(Sign::cross, Role::warning, "principal point of the calibration");
+    add(Sign::disc, Role::text, "image center");
+  }
   if (!horizon(canvas).empty()) add(Sign::line, Role::gravity, "horizon", "gravity");
   if (!options.show.cube && inspection.cube) hidden("cube", "cube");
   if (!options.show.cube) return rows;
@@ -262,6 +287,7 @@ void draw_results(const Canvas& canvas) {
     canvas.polyline(piece, imgui_color(Role::background, 0.5), 3.4F);
     canvas.polyline(piece, imgui_color(Role::gravity), 1.4F);
   }
+  if (doubts_principal_point(canvas.inspection)) draw_principal_point(canvas);
   if (!show.cube) return;
   // The image ends at its border, and so does the cube. An undistorted image has no straight
   // border.

@@ -75,6 +75,8 @@ std::string report_command(const fs::path& recording,
 /// assets/report/report.js.
 nlohmann::ordered_json report_scene(const Inspection& inspection);
 
+/// Returns a heading and a table of the findings; empty if there are none.
+std::string findings_table(std::span<const Finding> findings);
 /// Returns a table of the numbers of a result with one standard deviation each.
 std::string numbers_table(const Inspection& inspection);
 /// Returns a table of the settings that the result depends on; changed ones are marked.

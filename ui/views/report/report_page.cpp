@@ -232,7 +232,7 @@ std::string section_element(const ReportSection& section,
                                  number == 1 ? " class=\"first\"" : "",
                                  html_text(section_title(section)));
   made += verdict_element(inspection) + cards_element(inspection);
-  for (const std::string& note : notes_of(inspection)) made += element("p", "Note: " + note);
+  made += findings_table(inspection.findings);
   made += frames_element(section, level) + scene_element(section, level);
   if (inspection.initialization->ok)
     made +=

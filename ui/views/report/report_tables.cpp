@@ -341,6 +341,22 @@ std::string numbers_table(const Inspection& inspection) {
   return html_table({"quantity", "value", "uncertainty (1 sigma)", "remark"}, numbers.rows);
 }
 
+std::string findings_table(std::span<const Finding> findings) {
+  if (findings.empty()) return "";
+  NumberRows rows;
+  for (const Finding& finding : findings) {
+    const std::string level = to_string(finding.level);
+    const std::string style = level == "no plane" ? "degenerate" : level == "note" ? "" : level;
+    rows.push_back({{finding.key},
+                    {finding.ignored ? "ignored" : level, style},
+                    {finding.sentence},
+                    {finding.advice},
+                    {finding.command}});
+  }
+  return "<h3>Findings</h3>\n" +
+         html_table({"key", "level", "finding", "advice", "command in a script"}, std::move(rows));
+}
+
 std::string settings_table_html(const Inspection& inspection) {
   const Settings used = settings_used(inspection), usual;
   NumberRows rows;

@@ -115,6 +115,7 @@ std::vector<Action> make_actions() {
   add_view_actions(table);
   add_time_actions(table);
   add_method_actions(table);
+  add_finding_actions(table);
   add_help_actions(table);
   return table;
 }

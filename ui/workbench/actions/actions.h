@@ -168,6 +168,7 @@ void add_mask_actions(std::vector<Action>& table);  ///< a part of the menu Edit
 void add_view_actions(std::vector<Action>& table);
 void add_time_actions(std::vector<Action>& table);
 void add_method_actions(std::vector<Action>& table);
+void add_finding_actions(std::vector<Action>& table);  ///< a part of the menu Method
 void add_help_actions(std::vector<Action>& table);
 Action choice_of_method(const MethodChoice& method);
 

@@ -39,6 +39,10 @@ void add_help_pages(const MenuRows& menu) {
             {key(GLFW_KEY_F1, "F1"), letter('?')}},
         Row{HelpPage::glossary, "glossary", "Glossary", "Explains the terms of the window"},
         Row{HelpPage::manual, "manual", "Manual", "Explains the parts of the window and their use"},
+        Row{HelpPage::findings,
+            "findings",
+            "Findings",
+            "Lists what is checked, and which findings may be ignored"},
         Row{HelpPage::about, "about", "About", "Shows the version and how it was built"}}) {
     const auto is_open = [page = row.page](const WorkbenchState& s) {
       return s.view.show_help && s.view.help_page == page;

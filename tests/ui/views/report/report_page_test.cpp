@@ -99,6 +99,29 @@ TEST(ReportPage, ShowsWhyAnInitializationFailed) {
   EXPECT_THAT(page, Not(HasSubstr("<h3>Numbers</h3>")));
 }
 
+TEST(ReportPage, ListsFindings) {
+  ReportSection section = made_section("made");
+  EXPECT_THAT(report_page({.sections = {section}, .program = "1"}),
+              Not(HasSubstr("<h3>Findings</h3>")));
+  auto inspection = std::make_shared<Inspection>(*section.inspection);
+  inspection->findings = {{.key = "implausible-intrinsics",
+                           .level = Level::weak,
+                           .sentence = "fx < fy",
+                           .advice = "check them",
+                           .command = "set intrinsics_scale 0.75"},
+                          {.key = "guessed-camera", .sentence = "a guess", .ignored = true}};
+  section.inspection = inspection;
+  const std::string page = report_page({.sections = {section}, .program = "1"});
+  for (const char* text : {"<h3>Findings</h3>",
+                           ">implausible-intrinsics<",
+                           ">weak<",
+                           "fx &lt; fy",
+                           ">check them<",
+                           ">set intrinsics_scale 0.75<",
+                           ">ignored<"})
+    EXPECT_THAT(page, HasSubstr(text));
+}
+
 TEST(ReportPage, NamesAnUncertaintyThatIsNotTheMethodsOwn) {
   ReportSection section = made_section("made", {.normal_sigma_deg = 0.5});
   const auto page = [&] { return report_page({.sections = {section}, .program = "1"}); };
