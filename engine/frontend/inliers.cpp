@@ -99,13 +99,14 @@ bool fit(Window& window) {
 struct Errors {
   /// Transfer errors [sigmas of a coordinate of the frame], frames x tracks; NaN: not seen.
   Eigen::ArrayXXd normalized;
-  Eigen::ArrayXd gate;  ///< largest error of an agreeing track, one per frame
+  Eigen::ArrayXd gate;      ///< largest error of an agreeing track, one per frame
+  Eigen::ArrayXd sigma_px;  ///< of a coordinate, one per frame
 };
 
 Errors errors_of(const Window& window) {
   const int frames = window.frame_count(), tracks = window.track_count();
   const double unit = pixel_unit(window.K);
-  Errors errors{Eigen::ArrayXXd(frames, tracks), Eigen::ArrayXd(frames)};
+  Errors errors{Eigen::ArrayXXd(frames, tracks), Eigen::ArrayXd(frames), Eigen::ArrayXd(frames)};
   for (int i = 1; i < frames; ++i) {
     std::vector<double> of_inliers_px;
     for (int j = 0; j < tracks; ++j) {
@@ -119,6 +120,7 @@ Errors errors_of(const Window& window) {
         std::max(median(std::move(of_inliers_px)) / kMedianOfRayleigh, kLeastSigma_px * unit);
     errors.normalized.row(i) /= sigma_px;
     errors.gate[i] = std::min(kSigmas, window.threshold_px / sigma_px);
+    errors.sigma_px[i] = sigma_px;
   }
   return errors;
 }
@@ -306,6 +308,8 @@ void find_planes(Window& window,
     window.planes.push_back(plane_of(window, found.planes[k], ransac));
     window.planes.back().image_share = image_share(window, found.planes[k], camera);
     window.planes.back().stability = found.stability[k];
+    window.planes.back().rms_px = found.rms_px[k];
+    window.planes.back().gate_px = found.gate_px[k];
   }
   if (window.planes.empty()) window.planes.push_back(plane_of(window, {}, ransac));
   window.leader = std::clamp(options.leader, 0, static_cast<int>(window.planes.size()) - 1);
@@ -360,6 +364,14 @@ std::optional<RobustHomography> homography_ransac(const Matrix2Xd& from,
 
 std::vector<TrackConsistency> consistency(const Window& window) {
   return consistency(errors_of(window));
+}
+
+std::vector<double> frame_gates_px(const Window& window) {
+  std::vector<double> gates_px(window.frame_count(), window.threshold_px);
+  if (window.inliers != Inliers::consistent) return gates_px;
+  const Errors errors = errors_of(window);
+  for (int i = 1; i < window.frame_count(); ++i) gates_px[i] = errors.gate[i] * errors.sigma_px[i];
+  return gates_px;
 }
 
 Window make_window(const Tracks& tracks,

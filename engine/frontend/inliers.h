@@ -65,10 +65,17 @@ inline constexpr double kConsistentShare = 0.9;
 /// Evaluates the criteria of a window of consistent inliers, one per track.
 std::vector<TrackConsistency> consistency(const Window& window);
 
+/// Returns the largest transfer error of an inlier in each frame, to be multiplied by
+/// `Window::gate_factor` [px]: the window's threshold, for consistent inliers also at most 3.5
+/// standard deviations of the frame's tracks.
+std::vector<double> frame_gates_px(const Window& window);
+
 struct TrackPlanes {
   std::vector<std::vector<int>> planes;  ///< columns of their tracks, ascending
   std::vector<double> stability;  ///< share of each one's tracks that stay at half its gate [-]
-  int largest_refused = 0;        ///< tracks of the set that ended the search; 0: none
+  std::vector<Eigen::VectorXd> rms_px;  ///< see `WindowPlane::rms_px`
+  std::vector<double> gate_px;          ///< see `WindowPlane::gate_px`
+  int largest_refused = 0;              ///< tracks of the set that ended the search; 0: none
 };
 
 /// Extracts the planes of a window: sets of tracks that follow one homography a frame, over the

@@ -291,20 +291,26 @@ class Search {
     std::mt19937_64 random(seed);
     const int widest = widest_frame(points_);
     TrackPlanes result;
-    std::vector<std::vector<int>>& planes = result.planes;
+    std::vector<FoundPlane> planes;
     while (widest > 0 && planes.size() < kMostPlanes) {
       const Pairs pairs = pairs_of(points_, widest, free);
-      const FoundPlane found = settled(best_hypothesis(pairs, least_gate_px_, random), free);
+      FoundPlane found = settled(best_hypothesis(pairs, least_gate_px_, random), free);
       const int least = planes.empty() ? kLeastTracks : least_more();
       result.largest_refused = static_cast<int>(found.tracks.size());
       const double over_chance = planes.empty() ? kLeastOverChance : kLeastOverChanceOfMore;
       if (result.largest_refused < least || !stands_out(found, free, over_chance)) break;
-      planes.push_back(found.tracks);
       std::erase_if(free, [&](int j) { return std::ranges::binary_search(found.tracks, j); });
+      planes.push_back(std::move(found));
     }
-    std::ranges::stable_sort(planes,
-                             [](const auto& a, const auto& b) { return a.size() > b.size(); });
-    for (const std::vector<int>& plane : planes) result.stability.push_back(stability(plane));
+    std::ranges::stable_sort(planes, std::ranges::greater{}, [](const FoundPlane& plane) {
+      return plane.tracks.size();
+    });
+    for (FoundPlane& plane : planes) {
+      result.stability.push_back(stability(plane.tracks));
+      result.rms_px.push_back(plane.rms_px.matrix());
+      result.gate_px.push_back(plane.gate_px);
+      result.planes.push_back(std::move(plane.tracks));
+    }
     return result;
   }
 
@@ -358,15 +364,24 @@ TrackPlanes window_planes(const std::vector<Matrix2Xd>& points_px,
     TrackPlanes found = planes_of(points, gate_px, seed, ratios);
     for (std::vector<int>& plane : found.planes)
       std::ranges::transform(plane, plane.begin(), [&](int k) { return chosen[k]; });
+    for (Eigen::VectorXd& rms_px : found.rms_px) {
+      const Eigen::VectorXd of_chosen = rms_px;
+      rms_px.setConstant(std::ssize(on_first_plane), kInfinity);
+      rms_px(chosen) = of_chosen;
+    }
     return found;
   };
   TrackPlanes found = planes_among(true);
   if (found.planes.empty()) return found;
   const TrackPlanes others = planes_among(false);
-  found.planes.resize(1);
-  found.stability.resize(1);
-  found.planes.insert(found.planes.end(), others.planes.begin(), others.planes.end());
-  found.stability.insert(found.stability.end(), others.stability.begin(), others.stability.end());
+  const auto first_and_others = [](auto& first, const auto& further) {
+    first.resize(1);
+    first.insert(first.end(), further.begin(), further.end());
+  };
+  first_and_others(found.planes, others.planes);
+  first_and_others(found.stability, others.stability);
+  first_and_others(found.rms_px, others.rms_px);
+  first_and_others(found.gate_px, others.gate_px);
   return found;
 }
 

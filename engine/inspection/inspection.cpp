@@ -258,10 +258,13 @@ std::optional<double> normal_sigma_deg(const Inspection& inspection) {
 }
 
 std::string inliers_note(const Inspection& inspection) {
-  if (inspection.window->inliers == Inliers::consistent) return "tracks, consistent";
+  const Window& window = *inspection.window;
+  const int lost = window.lost_count(window.frame_count() - 1);
+  const std::string note = lost > 0 ? fmt::format("tracks, {} lost", lost) : "tracks";
+  if (window.inliers == Inliers::consistent) return note + ", consistent";
   const InitializeOptions& options = inspection.settings.options;
   const bool requested = uses_ransac(options) && inliers_used(options) == Inliers::consistent;
-  return requested ? "tracks, per frame: too few are consistent" : "tracks";
+  return note + (requested ? ", per frame: too few are consistent" : "");
 }
 
 std::vector<TruthJump> truth_jumps(const Inspection& inspection) {

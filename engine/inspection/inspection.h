@@ -214,8 +214,8 @@ inline bool is_excluded(const Inspection& inspection, int column) {
          settings.mask.contain(MaskKind::leave_out, tracks.raw_px[0].col(column));
 }
 
-/// Returns what the inliers are counted from and how they were selected, for people: "tracks,
-/// consistent".
+/// Returns what the inliers are counted from, how many of these the last frame does not see, and
+/// how the inliers were selected, for people: "tracks, 12 lost, consistent".
 std::string inliers_note(const Inspection& inspection);
 
 /// Returns the jumps of the ground truth within the window; empty without truth.

@@ -55,6 +55,14 @@ std::vector<std::vector<Vector2d>> distortion_grid(const Camera& camera, int cel
 /// Returns the results (null: none yet), times only with `timings`. `side`: cube's; 0: default.
 std::vector<ResultGroup> result_groups(const Inspection* inspection, bool timings, double side = 0);
 
+/// The normal uncertainty beside the verdict.
+struct NormalSigma {
+  std::string text = {};   ///< empty if unknown
+  bool of_result = false;  ///< else of the window alone, which is no answer
+};
+/// Returns that of the result, or of the window if the result failed or is degenerate.
+NormalSigma shown_normal_sigma(const Initialization& result);
+
 /// Returns a solver's iterations; with those of discarded attempts, which no curve shows: "42 of
 /// 110".
 std::string iterations_text(const SolverReport& solver);

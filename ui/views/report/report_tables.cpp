@@ -157,8 +157,10 @@ void add_residuals(Numbers& numbers, const Inspection& inspection) {
   const Initialization& result = *inspection.initialization;
   const auto px = [](double value) { return fmt::format("{:.3f} px", value); };
   if (result.transfer_rms_px)
-    numbers.add(
-        "transfer error, RMS", px(*result.transfer_rms_px), "", "inliers of the main plane");
+    numbers.add("residual of the solution, RMS",
+                px(*result.transfer_rms_px),
+                "",
+                "inliers of the main plane");
   if (result.reprojection_rms_px)
     numbers.add("reprojection error, RMS", px(*result.reprojection_rms_px), "", "the same inliers");
 }
@@ -205,7 +207,8 @@ std::vector<std::pair<const char*, HtmlCell>> comparison_cells(const Inspection&
       {"verdict", {word, word == "no plane" ? "degenerate" : word}},
       {"frames",
        number(fmt::format("{} to {}", window.start, window.start + window.frame_count() - 1))},
-      {"normal, 1 sigma [deg]", decimals(normal_sigma_deg(inspection), 1, 3)},
+      {"normal, 1 sigma [deg]",
+       decimals(result.ok ? normal_sigma_deg(inspection) : std::nullopt, 1, 3)},
       {"inliers", number(fmt::format("{}/{}", row.inliers.value_or(0), row.tracks.value_or(0)))},
       {"reprojection [px]", decimals(result.reprojection_rms_px, 1, 3)},
       {"ATE [mm]", decimals(row.ate_m, 1e3, 2)},
