@@ -308,8 +308,6 @@ void find_planes(Window& window,
     window.planes.push_back(plane_of(window, found.planes[k], ransac));
     window.planes.back().image_share = image_share(window, found.planes[k], camera);
     window.planes.back().stability = found.stability[k];
-    window.planes.back().rms_px = found.rms_px[k];
-    window.planes.back().gate_px = found.gate_px[k];
   }
   if (window.planes.empty()) window.planes.push_back(plane_of(window, {}, ransac));
   window.leader = std::clamp(options.leader, 0, static_cast<int>(window.planes.size()) - 1);

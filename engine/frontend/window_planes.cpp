@@ -291,26 +291,20 @@ class Search {
     std::mt19937_64 random(seed);
     const int widest = widest_frame(points_);
     TrackPlanes result;
-    std::vector<FoundPlane> planes;
+    std::vector<std::vector<int>>& planes = result.planes;
     while (widest > 0 && planes.size() < kMostPlanes) {
       const Pairs pairs = pairs_of(points_, widest, free);
-      FoundPlane found = settled(best_hypothesis(pairs, least_gate_px_, random), free);
+      const FoundPlane found = settled(best_hypothesis(pairs, least_gate_px_, random), free);
       const int least = planes.empty() ? kLeastTracks : least_more();
       result.largest_refused = static_cast<int>(found.tracks.size());
       const double over_chance = planes.empty() ? kLeastOverChance : kLeastOverChanceOfMore;
       if (result.largest_refused < least || !stands_out(found, free, over_chance)) break;
+      planes.push_back(found.tracks);
       std::erase_if(free, [&](int j) { return std::ranges::binary_search(found.tracks, j); });
-      planes.push_back(std::move(found));
     }
-    std::ranges::stable_sort(planes, std::ranges::greater{}, [](const FoundPlane& plane) {
-      return plane.tracks.size();
-    });
-    for (FoundPlane& plane : planes) {
-      result.stability.push_back(stability(plane.tracks));
-      result.rms_px.push_back(plane.rms_px.matrix());
-      result.gate_px.push_back(plane.gate_px);
-      result.planes.push_back(std::move(plane.tracks));
-    }
+    std::ranges::stable_sort(planes,
+                             [](const auto& a, const auto& b) { return a.size() > b.size(); });
+    for (const std::vector<int>& plane : planes) result.stability.push_back(stability(plane));
     return result;
   }
 
@@ -347,6 +341,20 @@ TrackPlanes planes_of(const std::vector<Matrix2Xd>& points_px,
 
 }  // namespace
 
+std::vector<PlaneErrors> plane_errors(const Window& window) {
+  std::vector<PlaneErrors> planes;
+  const double gate_px = window.threshold_px, fine_px = kLeastGate * gate_px;
+  const Search search({window.points_px, window.noise_ratio}, fine_px, gate_px);
+  for (const WindowPlane& plane : window.planes) {
+    const ArrayXd rms_px = search.errors_from(plane.tracks);
+    const double own_px = search.gate_of(plane.tracks, rms_px);
+    // The search with the coarse gate may have found the plane: its tracks are beyond the fine one.
+    const bool fine = (rms_px(plane.tracks) <= own_px).all();
+    planes.push_back({rms_px.matrix(), fine ? own_px : gate_px});
+  }
+  return planes;
+}
+
 TrackPlanes window_planes(const std::vector<Matrix2Xd>& points_px,
                           double gate_px,
                           std::uint64_t seed,
@@ -364,24 +372,15 @@ TrackPlanes window_planes(const std::vector<Matrix2Xd>& points_px,
     TrackPlanes found = planes_of(points, gate_px, seed, ratios);
     for (std::vector<int>& plane : found.planes)
       std::ranges::transform(plane, plane.begin(), [&](int k) { return chosen[k]; });
-    for (Eigen::VectorXd& rms_px : found.rms_px) {
-      const Eigen::VectorXd of_chosen = rms_px;
-      rms_px.setConstant(std::ssize(on_first_plane), kInfinity);
-      rms_px(chosen) = of_chosen;
-    }
     return found;
   };
   TrackPlanes found = planes_among(true);
   if (found.planes.empty()) return found;
   const TrackPlanes others = planes_among(false);
-  const auto first_and_others = [](auto& first, const auto& further) {
-    first.resize(1);
-    first.insert(first.end(), further.begin(), further.end());
-  };
-  first_and_others(found.planes, others.planes);
-  first_and_others(found.stability, others.stability);
-  first_and_others(found.rms_px, others.rms_px);
-  first_and_others(found.gate_px, others.gate_px);
+  found.planes.resize(1);
+  found.stability.resize(1);
+  found.planes.insert(found.planes.end(), others.planes.begin(), others.planes.end());
+  found.stability.insert(found.stability.end(), others.stability.begin(), others.stability.end());
   return found;
 }
 

@@ -66,12 +66,6 @@ int Window::inlier_count(int frame) const {
   return static_cast<int>(std::ranges::count(inlier[frame], true));
 }
 
-int Window::lost_count(int frame) const {
-  int lost = 0;
-  for (int j = 0; j < track_count(); ++j) lost += is_lost(frame, j) ? 1 : 0;
-  return lost;
-}
-
 std::vector<int> Window::inlier_tracks(int frame) const {
   std::vector<int> tracks;
   for (int j = 0; j < track_count(); ++j) {

@@ -67,10 +67,6 @@ struct WindowPlane {
   std::vector<std::vector<bool>> inlier;  ///< one per frame and track: observed, agrees with H_i1
   double image_share = 0;  ///< share of the reference image inside the tracks' convex hull [-]
   double stability = 1;    ///< share of its tracks that stay if the gate is halved [-]
-  /// RMS transfer error of every track of the window from this plane, over its `gate_factor`, by
-  /// which its tracks were chosen [px]; infinite: not measured. Empty if unknown.
-  Eigen::VectorXd rms_px = {};
-  double gate_px = 0;  ///< largest `rms_px` of its tracks
 };
 
 /// The input of every initializer. Frame 0 is the reference frame (frame 1 of the paper), whose
@@ -135,12 +131,6 @@ struct Window {
   /// in the reference frame, at least 1, because homographies are fitted without weights.
   double gate_factor(int frame, int track) const;
   int inlier_count(int frame) const;
-  /// Returns true if the track starts in the reference frame but has no observation in this one.
-  /// Excluded tracks have none at all and are not lost.
-  bool is_lost(int frame, int track) const {
-    return points_px[0].col(track).allFinite() && !points_px[frame].col(track).allFinite();
-  }
-  int lost_count(int frame) const;
   /// Returns the inlier tracks of a frame, ascending.
   std::vector<int> inlier_tracks(int frame) const;
   /// Returns true if the track is an inlier in at least half of the frames that observe it, without

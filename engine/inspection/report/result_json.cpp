@@ -69,7 +69,7 @@ ordered_json frames_json(const Inspection& inspection) {
          {"p_wc", ok ? vector_json(cameras[i].p_wc) : ordered_json(nullptr)},
          {"q_wc_xyzw", ok ? vector_json(quaternion_xyzw(cameras[i].R_wc)) : ordered_json(nullptr)},
          {"inliers", window.inlier_count(i)},
-         {"lost", window.lost_count(i)}});
+         {"lost", lost_count(window, i)}});
   return frames;
 }
 
@@ -381,7 +381,7 @@ ordered_json to_json(const Inspection& inspection) {
                     {"frames", window.frame_count()},
                     {"tracks", window.track_count()},
                     {"inliers", window.inlier_count(0)},
-                    {"lost", window.lost_count(window.frame_count() - 1)}};
+                    {"lost", lost_count(window, window.frame_count() - 1)}};
   json["settings"] = settings_json(inspection);
   json["unused_settings"] = unused_json(inspection);
   if (!inspection.rotations_note.empty()) json["rotations_note"] = inspection.rotations_note;

@@ -41,6 +41,8 @@ struct Selection {
   const Window& window = inspection.selection ? *inspection.selection : *inspection.window;
   bool limited = ransac_options(inspection.settings.options).enabled;
   std::vector<double> gates_px = frame_gates_px(window);
+  std::vector<PlaneErrors> plane_errors =
+      window.inliers == Inliers::planes ? gpo::plane_errors(window) : std::vector<PlaneErrors>();
   std::vector<TrackConsistency> consistencies =
       window.inliers == Inliers::consistent ? consistency(window) : std::vector<TrackConsistency>();
 
@@ -170,21 +172,19 @@ std::string verdict_on(const Selection& selection, int plane, const TrackLife& l
 std::string verdict_on_no_plane(const Selection& selection, int column) {
   const Window& window = selection.window;
   if (window.inliers != Inliers::planes) return "";
-  if (window.planes.empty()) return "outlier: the window has no plane";
-  const auto gates = [&](const WindowPlane& plane) {
-    return plane.rms_px.size() == 0 ? INFINITY : plane.rms_px[column] / plane.gate_px;
-  };
-  const auto nearest = std::ranges::min_element(window.planes, {}, gates);
+  if (selection.plane_errors.empty()) return "outlier: the window has no plane";
+  const auto gates = [&](const PlaneErrors& plane) { return plane.rms_px[column] / plane.gate_px; };
+  const auto nearest = std::ranges::min_element(selection.plane_errors, {}, gates);
   if (!std::isfinite(gates(*nearest))) return "outlier: seen too shortly to be put on a plane";
-  double sum = 0;
+  double squares = 0;
   int seen = 0;
   for (int i = 1; i < window.frame_count(); ++i) {
     if (!window.points_px[i].col(column).allFinite()) continue;
-    sum += std::pow(window.gate_factor(i, column), 2);
+    squares += std::pow(window.gate_factor(i, column), 2);
     ++seen;
   }
-  const double factor = std::sqrt(sum / std::max(1, seen));
-  const int number = static_cast<int>(nearest - window.planes.begin());
+  const double factor = std::sqrt(squares / std::max(1, seen));
+  const int number = static_cast<int>(nearest - selection.plane_errors.begin());
   return fmt::format("on no plane: its RMS {} from {} over the window",
                      transfer_text(factor * nearest->rms_px[column], factor * nearest->gate_px),
                      plane_title(selection.inspection, number));
@@ -279,6 +279,18 @@ TrackLife life_of(const Selection& selection, int column) {
 }
 
 }  // namespace
+
+bool is_lost(const Window& window, int frame, int track) {
+  const auto seen = [&](int i) { return window.points_px[i].col(track).allFinite(); };
+  return seen(0) && !seen(frame);
+}
+
+int lost_count(const Window& window, int frame) {
+  int lost = 0;
+  for (int track = 0; track < window.track_count(); ++track)
+    lost += is_lost(window, frame, track) ? 1 : 0;
+  return lost;
+}
 
 std::vector<ResidualVector> residual_vectors(const Inspection& inspection, int frame_in_window) {
   const Window& window = *inspection.window;

@@ -297,7 +297,7 @@ void tracks_drawer(const PanelContext& ui, const Rectangle& place) {
   colored_text(Role::text_dim,
                fmt::format("{}, {} lost, {} selected \u00b7 click a column title to sort",
                            counted(ui.inspection()->tracks->track_count(), "track"),
-                           window.lost_count(window.frame_count() - 1),
+                           lost_count(window, window.frame_count() - 1),
                            ui.state.selection.tracks.size()));
   copy_buttons(ui);
   const float top = ImGui::GetCursorPosY();

@@ -83,11 +83,12 @@ std::vector<ComparedColumn> make_columns() {
        .value = [](const Inspection& i) -> Value { return i.timing.initialize; },
        .is_time = true}};
   columns.insert(columns.end(), metrics().begin(), metrics().end());
-  columns.push_back({.title = "Normal \u03c3",
-                     .meaning = "Normal uncertainty (1 sigma, first order), without ground truth",
-                     .unit = "deg",
-                     .text = [](double deg) { return deg > 90 ? "undetermined" : angle_text(deg); },
-                     .value = normal_sigma});
+  columns.push_back(
+      {.title = "Normal \u03c3",
+       .meaning = "Normal uncertainty (1 sigma, first order), without ground truth",
+       .unit = "deg",
+       .text = [](double deg) { return deg <= 90 ? angle_text(deg) : "undetermined"; },
+       .value = normal_sigma});
   return columns;
 }
 

@@ -1,5 +1,6 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
+#include "engine/inspection/studies/studies.h"
 #include "engine/recording/companions/companion_files.h"
 #include "ui/context/gui.h"
 #include "ui/panels/panels.h"
@@ -282,7 +283,7 @@ std::string bar_text(const Inspection& inspection, int frame) {
   std::string text = fmt::format("frame {}", frame);
   if (in_window < 0 || in_window >= window.frame_count()) return text;
   text += ": " + counted(window.inlier_count(in_window), "inlier");
-  if (const int lost = window.lost_count(in_window); lost > 0)
+  if (const int lost = lost_count(window, in_window); lost > 0)
     text += fmt::format(", {} lost", lost);
   if (in_window < static_cast<int>(inspection.motion.size())) {
     const FrameMotion& motion = inspection.motion[in_window];

@@ -168,7 +168,7 @@ LegendRows track_rows(const Canvas& canvas) {
                       plane_color(plane),
                       fmt::format("{} on {}", count, plane_title(inspection, plane))});
   rows.push_back({Sign::cross, color_of(Role::outlier), counted(outliers, "outlier")});
-  if (const int lost = window.lost_count(canvas.frame); lost > 0)
+  if (const int lost = lost_count(window, canvas.frame); lost > 0)
     rows.push_back({Sign::diamond, color_of(Role::lost), fmt::format("{} lost", lost)});
   if (excluded > 0)
     rows.push_back({Sign::dot, color_of(Role::text_dim), fmt::format("{} excluded", excluded)});

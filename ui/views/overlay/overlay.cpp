@@ -317,7 +317,7 @@ std::vector<int> other_planes(const Window& window) {
 
 SignStyle track_style(const Inspection& inspection, int frame, int column) {
   if (is_excluded(inspection, column)) return {Sign::dot, color_of(Role::text_dim)};
-  if (inspection.window->is_lost(frame, column)) return {Sign::diamond, color_of(Role::lost)};
+  if (is_lost(*inspection.window, frame, column)) return {Sign::diamond, color_of(Role::lost)};
   const auto plane = plane_of_track(*inspection.window, frame, column);
   if (!plane) return {Sign::cross, color_of(Role::outlier)};
   const bool leading = *plane == inspection.window->leader;
@@ -328,7 +328,7 @@ std::optional<Vector2d> place_of_sign(const Inspection& inspection, int frame, i
   const Tracks& tracks = *inspection.tracks;
   if (frame < 0 || frame >= tracks.frame_count()) return std::nullopt;
   int last = frame;
-  if (inspection.window->is_lost(frame, column))
+  if (is_lost(*inspection.window, frame, column))
     while (last > 0 && !tracks.seen(last, column)) --last;
   return tracks.seen(last, column) ? std::optional<Vector2d>(tracks.raw_px[last].col(column))
                                    : std::nullopt;

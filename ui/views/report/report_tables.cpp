@@ -30,7 +30,7 @@ std::string vector_text(const Vector3d& v, int digits) {
 
 /// Returns a standard deviation of a direction; beyond a right angle it means nothing.
 std::string text_of_sigma(double sigma_deg) {
-  return sigma_deg > 90 ? "undetermined" : fmt::format("{:.3g} deg", sigma_deg);
+  return sigma_deg <= 90 ? fmt::format("{:.3g} deg", sigma_deg) : "undetermined";
 }
 
 /// Collects rows of a quantity, its value, its standard deviation, and what they depend on.
