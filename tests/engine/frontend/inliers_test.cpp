@@ -313,6 +313,31 @@ TEST(WindowPlanes, SeparateTwoLayersAndJudgeATrackByTheFramesThatSeeIt) {
   EXPECT_TRUE(std::ranges::binary_search(found.planes[0], 3));
 }
 
+TEST(WindowPlanes, HaveTheErrorsByWhichTheirTracksWereChosen) {
+  int coarse = 0, others = 0;
+  for (const double noise_px : {0.3, 0.6, 0.9})
+    for (std::uint64_t seed = 1; seed <= 10; ++seed) {
+      const Room room = simulate_room({.noise_px = noise_px,
+                                       .planes = floor_and_walls(),
+                                       .shares = {0.5, 0.3, 0.2},
+                                       .seed = seed});
+      const std::vector<PlaneErrors> errors = plane_errors(room.window);
+      ASSERT_EQ(errors.size(), room.window.planes.size());
+      for (std::size_t k = 0; k < errors.size(); ++k) {
+        coarse += errors[k].gate_px == room.window.threshold_px ? 1 : 0;
+        for (int j = 0; j < room.window.track_count(); ++j) {
+          const auto plane = room.window.plane_of(j);
+          const bool agrees = errors[k].rms_px[j] <= errors[k].gate_px;
+          if (plane == static_cast<int>(k)) EXPECT_TRUE(agrees) << noise_px << " " << seed;
+          if (!plane) EXPECT_FALSE(agrees) << noise_px << " " << seed << " " << j;
+          others += plane ? 0 : 1;
+        }
+      }
+    }
+  EXPECT_GT(coarse, 0);
+  EXPECT_GT(others, 100);
+}
+
 // RMS transfer errors are 1.4 px, the gate is 2 px. With 1 px of noise they are at the gate, and
 // one window in eight is rejected.
 TEST(WindowPlanes, AreFoundFromFewNoisyTracksOrReportTheLargestRejectedSet) {

@@ -116,6 +116,45 @@ TEST(Results, NameTheInlierSelection) {
   EXPECT_EQ(rows_of(&inspection).at("Inliers").note, "tracks, consistent");
 }
 
+TEST(Results, CountLostTracksApart) {
+  Inspection inspection = inspected();
+  Window window = *inspection.window;
+  window.points_px.emplace_back(window.points_px[0]).col(1).setConstant(NAN);
+  inspection.window = std::make_shared<const Window>(window);
+  const ResultRow row = rows_of(&inspection).at("Inliers");
+  EXPECT_EQ(row.value, "2 / 3");
+  EXPECT_EQ(row.note, "tracks, 1 lost");
+}
+
+TEST(Results, ShowNoSigmaAsAnAnswerUnlessThereIsOne) {
+  Initialization result;
+  EXPECT_EQ(shown_normal_sigma(result).text, "");
+  result.verdict = Verdict{.readiness = Readiness::ready, .normal_sigma_deg = 0.31};
+  EXPECT_EQ(shown_normal_sigma(result).text, "window: normal \u00b10.310\u00b0") << "it failed";
+  EXPECT_FALSE(shown_normal_sigma(result).of_result);
+  result.ok = true;
+  EXPECT_EQ(shown_normal_sigma(result).text, "\u00b10.310\u00b0");
+  EXPECT_TRUE(shown_normal_sigma(result).of_result);
+  result.verdict->readiness = Readiness::weak;
+  EXPECT_TRUE(shown_normal_sigma(result).of_result);
+  for (const Readiness readiness : {Readiness::degenerate, Readiness::no_plane}) {
+    result.verdict->readiness = readiness;
+    EXPECT_FALSE(shown_normal_sigma(result).of_result);
+  }
+}
+
+TEST(Texts, ShowDashesForWhatIsNotANumber) {
+  const double nan = std::nan("");
+  for (const double unknown : {nan, -nan, INFINITY}) {
+    EXPECT_EQ(number_text(unknown, 3), "\u2013");
+    EXPECT_EQ(angle_text(unknown), "\u2013\u00b0");
+    EXPECT_EQ(two_decimals(unknown), "\u2013");
+    EXPECT_EQ(sigma_text(unknown), "undetermined");
+    EXPECT_EQ(uncertain_text(0.5, unknown), "0.500 \u00b1\u2013");
+    EXPECT_EQ(uncertain_text(unknown, 0.1), "\u2013 \u00b1\u2013");
+  }
+}
+
 TEST(Results, ShowTheUncertaintyOfTruthFromTheBoard) {
   Inspection inspection = inspected();
   EXPECT_FALSE(rows_of(&inspection).contains("Truth"));
