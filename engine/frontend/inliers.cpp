@@ -100,7 +100,7 @@ struct Errors {
   /// Transfer errors [sigmas of a coordinate of the frame], frames x tracks; NaN: not seen.
   Eigen::ArrayXXd normalized;
   Eigen::ArrayXd gate;      ///< largest error of an agreeing track, one per frame
-  Eigen::ArrayXd sigma_px;  ///< of a coordinate, one per frame
+  Eigen::ArrayXd sigma_px;  ///< noise of a coordinate, one per frame
 };
 
 Errors errors_of(const Window& window) {

@@ -343,14 +343,14 @@ TrackPlanes planes_of(const std::vector<Matrix2Xd>& points_px,
 
 std::vector<PlaneErrors> plane_errors(const Window& window) {
   std::vector<PlaneErrors> planes;
-  const double gate_px = window.threshold_px, fine_px = kLeastGate * gate_px;
-  const Search search({window.points_px, window.noise_ratio}, fine_px, gate_px);
+  const Search search({window.points_px, window.noise_ratio},
+                      kLeastGate * window.threshold_px,
+                      window.threshold_px);
   for (const WindowPlane& plane : window.planes) {
     const ArrayXd rms_px = search.errors_from(plane.tracks);
-    const double own_px = search.gate_of(plane.tracks, rms_px);
-    // The search with the coarse gate may have found the plane: its tracks are beyond the fine one.
-    const bool fine = (rms_px(plane.tracks) <= own_px).all();
-    planes.push_back({rms_px.matrix(), fine ? own_px : gate_px});
+    // The search may have used the wider gate, or have stopped before it settled.
+    const double worst_px = rms_px(plane.tracks).maxCoeff();
+    planes.push_back({rms_px.matrix(), std::max(search.gate_of(plane.tracks, rms_px), worst_px)});
   }
   return planes;
 }

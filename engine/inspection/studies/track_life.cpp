@@ -5,7 +5,8 @@
 #include "engine/geometry/homography.h"
 #include "engine/inspection/rolling_cameras.h"
 #include "engine/inspection/studies/studies.h"
-#include "engine/pipeline/pipeline.h"
+#include "engine/pipeline/method_defaults.h"
+#include "engine/pipeline/method_defaults.h"
 
 #include <algorithm>
 #include <array>
@@ -34,7 +35,7 @@ std::optional<Eigen::Vector2d> predicted_px(const Inspection& inspection,
   return px.allFinite() ? std::optional(px) : std::nullopt;
 }
 
-/// What decided on the inliers of a window, evaluated once for all tracks.
+/// Limits and errors that decided on the inliers of a window, evaluated once for all tracks.
 struct Selection {
   const Inspection& inspection;
   /// The window when its inliers were selected; without frames that were added later.

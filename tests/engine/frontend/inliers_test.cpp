@@ -314,28 +314,28 @@ TEST(WindowPlanes, SeparateTwoLayersAndJudgeATrackByTheFramesThatSeeIt) {
 }
 
 TEST(WindowPlanes, HaveTheErrorsByWhichTheirTracksWereChosen) {
-  int coarse = 0, others = 0;
-  for (const double noise_px : {0.3, 0.6, 0.9})
+  int on = 0, off = 0;
+  for (const double noise_px : {0.2, 0.4})
     for (std::uint64_t seed = 1; seed <= 10; ++seed) {
       const Room room = simulate_room({.noise_px = noise_px,
                                        .planes = floor_and_walls(),
-                                       .shares = {0.5, 0.3, 0.2},
+                                       .shares = {0.45, 0.25, 0.1},
                                        .seed = seed});
       const std::vector<PlaneErrors> errors = plane_errors(room.window);
       ASSERT_EQ(errors.size(), room.window.planes.size());
-      for (std::size_t k = 0; k < errors.size(); ++k) {
-        coarse += errors[k].gate_px == room.window.threshold_px ? 1 : 0;
+      for (int k = 0; k < std::ssize(errors); ++k) {
+        EXPECT_GE(errors[k].gate_px, 0.6 * room.window.threshold_px);
+        EXPECT_LE(errors[k].gate_px, room.window.threshold_px);
         for (int j = 0; j < room.window.track_count(); ++j) {
           const auto plane = room.window.plane_of(j);
-          const bool agrees = errors[k].rms_px[j] <= errors[k].gate_px;
-          if (plane == static_cast<int>(k)) EXPECT_TRUE(agrees) << noise_px << " " << seed;
-          if (!plane) EXPECT_FALSE(agrees) << noise_px << " " << seed << " " << j;
-          others += plane ? 0 : 1;
+          if (plane && plane != k) continue;
+          EXPECT_EQ(errors[k].rms_px[j] <= errors[k].gate_px, plane == k) << seed << " " << j;
+          ++(plane ? on : off);
         }
       }
     }
-  EXPECT_GT(coarse, 0);
-  EXPECT_GT(others, 100);
+  EXPECT_GT(on, 2000);
+  EXPECT_GT(off, 300);
 }
 
 // RMS transfer errors are 1.4 px, the gate is 2 px. With 1 px of noise they are at the gate, and

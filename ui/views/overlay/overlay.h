@@ -18,13 +18,13 @@ enum class Sign {
   circle,
   thin_circle,
   cross,
-  diamond,
   dot,
   line,
   square,
   frustum,
   disc,
-  triangle
+  triangle,
+  diamond
 };
 
 struct LegendRow {

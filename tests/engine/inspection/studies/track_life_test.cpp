@@ -333,7 +333,10 @@ TEST_F(TracksTable, HasThePlaneOfATrackAndReportsWhyItIsAnOutlierOrLost) {
   EXPECT_EQ(std::ranges::count(row_of(100, 1002), ','), 5)
       << "commas of a sentence would separate cells";
   window->planes.resize(2);
-  for (WindowPlane& plane : window->planes) plane.inlier = window->inlier;
+  for (WindowPlane& plane : window->planes) {
+    plane.H_i1 = window->H_i1;
+    plane.inlier = window->inlier;
+  }
   window->planes[0].tracks = {139};
   window->planes[1].tracks = {2, 5};
   EXPECT_THAT(row_of(110, 1139), HasSubstr(",1,inlier,"));

@@ -13,6 +13,7 @@
 
 #include <cmath>
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 
 namespace gpo {
@@ -320,6 +321,25 @@ TEST(TimeLine, ShowsComparableVerdictsWhereThereAreAny) {
   for (Verdict& verdict : inspection.comparable_growth) verdict.readiness = Readiness::weak;
   EXPECT_THAT(bar_text(inspection, 30),
               AllOf(HasSubstr("weak"), HasSubstr("at least as wide as the whole window's")));
+}
+
+TEST(TimeLine, CountsLostTracksApart) {
+  Inspection inspection = made_inspection({.images = false});
+  const Window& window = *inspection.window;
+  ASSERT_GT(lost_count(window, 25), 10);
+  EXPECT_THAT(
+      bar_text(inspection, 30),
+      HasSubstr(fmt::format(
+          "frame 30: {} inliers, {} lost", window.inlier_count(25), lost_count(window, 25))));
+  EXPECT_THAT(bar_text(inspection, 5), Not(HasSubstr("lost")));
+}
+
+TEST(TimeLine, OmitsAnUnknownParallax) {
+  Inspection inspection = made_inspection({.images = false});
+  inspection.motion.assign(30, {.parallax_px = 3.25, .rotation_rate_deg_s = 40});
+  inspection.motion[2].parallax_px = std::nan("");
+  EXPECT_THAT(bar_text(inspection, 6), HasSubstr("\nparallax 3.2 px, angular rate 40"));
+  EXPECT_THAT(bar_text(inspection, 7), HasSubstr("\nangular rate 40"));
 }
 
 TEST(TimeLine, ShowsTheVerdictOnTheWindowThatEndsAtABar) {
