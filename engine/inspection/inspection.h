@@ -102,8 +102,8 @@ struct Inspection {
   std::shared_ptr<const Recording> recording;
   Settings settings;
   RotationSource rotations_used = RotationSource::gyro;  ///< never automatic
-  std::string rotations_note;                            ///< see `ChosenRotations::note`
-  std::optional<Eigen::Vector3d> gyroscope_bias_rad_s;   ///< subtracted from the rates
+  std::string rotations_note;  ///< see `ChosenRotations::note`
+  std::optional<Eigen::Vector3d> gyroscope_bias_rad_s;  ///< subtracted from the rates
   std::shared_ptr<const Tracks> tracks;
   std::shared_ptr<const Window> window;
   /// `window` as it was when its inliers were selected, without the row delay that was compensated
