@@ -100,13 +100,14 @@ bool fit(Window& window) {
 struct Errors {
   /// Transfer errors [sigmas of a coordinate of the frame], frames x tracks; NaN: not seen.
   Eigen::ArrayXXd normalized;
-  Eigen::ArrayXd gate;  ///< largest error of an agreeing track, one per frame
+  Eigen::ArrayXd gate;      ///< largest error of an agreeing track, one per frame
+  Eigen::ArrayXd sigma_px;  ///< noise of a coordinate, one per frame
 };
 
 Errors errors_of(const Window& window) {
   const int frames = window.frame_count(), tracks = window.track_count();
   const double unit = pixel_unit(window);
-  Errors errors{Eigen::ArrayXXd(frames, tracks), Eigen::ArrayXd(frames)};
+  Errors errors{Eigen::ArrayXXd(frames, tracks), Eigen::ArrayXd(frames), Eigen::ArrayXd(frames)};
   for (int i = 1; i < frames; ++i) {
     std::vector<double> of_inliers_px;
     for (int j = 0; j < tracks; ++j) {
@@ -120,6 +121,7 @@ Errors errors_of(const Window& window) {
         std::max(median(std::move(of_inliers_px)) / kMedianOfRayleigh, kLeastSigma_px * unit);
     errors.normalized.row(i) /= sigma_px;
     errors.gate[i] = std::min(kSigmas, window.threshold_px / sigma_px);
+    errors.sigma_px[i] = sigma_px;
   }
   return errors;
 }
@@ -368,6 +370,14 @@ std::optional<RobustHomography> homography_ransac(const Matrix2Xd& from,
 
 std::vector<TrackConsistency> consistency(const Window& window) {
   return consistency(errors_of(window));
+}
+
+std::vector<double> frame_gates_px(const Window& window) {
+  std::vector<double> gates_px(window.frame_count(), window.threshold_px);
+  if (window.inliers != Inliers::consistent) return gates_px;
+  const Errors errors = errors_of(window);
+  for (int i = 1; i < window.frame_count(); ++i) gates_px[i] = errors.gate[i] * errors.sigma_px[i];
+  return gates_px;
 }
 
 Window make_window(const Tracks& tracks,

@@ -65,6 +65,11 @@ inline constexpr double kConsistentShare = 0.9;
 /// Evaluates the criteria of a window of consistent inliers, one per track.
 std::vector<TrackConsistency> consistency(const Window& window);
 
+/// Returns the largest transfer error of an inlier in each frame, to be multiplied by
+/// `Window::gate_factor` [px]: the window's threshold, for consistent inliers also at most 3.5
+/// standard deviations of the frame's tracks.
+std::vector<double> frame_gates_px(const Window& window);
+
 struct TrackPlanes {
   std::vector<std::vector<int>> planes;  ///< columns of their tracks, ascending
   std::vector<double> stability;  ///< share of each one's tracks that stay at half its gate [-]
@@ -82,6 +87,17 @@ TrackPlanes window_planes(const std::vector<Eigen::Matrix2Xd>& points_px,
                           std::uint64_t seed = 1,
                           const std::vector<Eigen::VectorXd>& noise_ratio = {},
                           const std::vector<bool>& on_first_plane = {});
+
+/// The errors by which the tracks of a window were put on one of its planes (`window_planes`).
+struct PlaneErrors {
+  /// RMS transfer error of each track over a few frames of the window, over its
+  /// `Window::gate_factor` [px]; infinite: none of these frames sees it.
+  Eigen::VectorXd rms_px;
+  double gate_px = 0;  ///< largest `rms_px` of a track on the plane
+};
+
+/// Computes the errors of a window's planes again, one for each of `Window::planes`.
+std::vector<PlaneErrors> plane_errors(const Window& window);
 
 struct InlierOptions {
   RansacOptions ransac = {};

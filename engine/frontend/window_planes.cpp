@@ -341,6 +341,20 @@ TrackPlanes planes_of(const std::vector<Matrix2Xd>& points_px,
 
 }  // namespace
 
+std::vector<PlaneErrors> plane_errors(const Window& window) {
+  std::vector<PlaneErrors> planes;
+  const Search search({window.points_px, window.noise_ratio},
+                      kLeastGate * window.threshold_px,
+                      window.threshold_px);
+  for (const WindowPlane& plane : window.planes) {
+    const ArrayXd rms_px = search.errors_from(plane.tracks);
+    // The search may have used the wider gate, or have stopped before it settled.
+    const double worst_px = rms_px(plane.tracks).maxCoeff();
+    planes.push_back({rms_px.matrix(), std::max(search.gate_of(plane.tracks, rms_px), worst_px)});
+  }
+  return planes;
+}
+
 TrackPlanes window_planes(const std::vector<Matrix2Xd>& points_px,
                           double gate_px,
                           std::uint64_t seed,

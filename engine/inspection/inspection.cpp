@@ -4,6 +4,7 @@
 
 #include "engine/base/error.h"
 #include "engine/geometry/statistics.h"
+#include "engine/inspection/studies/studies.h"
 #include "engine/pipeline/method_defaults.h"
 #include "engine/pipeline/pipeline.h"
 #include "engine/recording/companions/companion_files.h"
@@ -258,10 +259,13 @@ std::optional<double> normal_sigma_deg(const Inspection& inspection) {
 }
 
 std::string inliers_note(const Inspection& inspection) {
-  if (inspection.window->inliers == Inliers::consistent) return "tracks, consistent";
+  const Window& window = *inspection.window;
+  const int lost = lost_count(window, window.frame_count() - 1);
+  const std::string note = lost > 0 ? fmt::format("tracks, {} lost", lost) : "tracks";
+  if (window.inliers == Inliers::consistent) return note + ", consistent";
   const InitializeOptions& options = inspection.settings.options;
   const bool requested = uses_ransac(options) && inliers_used(options) == Inliers::consistent;
-  return requested ? "tracks, per frame: too few are consistent" : "tracks";
+  return note + (requested ? ", per frame: too few are consistent" : "");
 }
 
 std::vector<TruthJump> truth_jumps(const Inspection& inspection) {

@@ -222,8 +222,8 @@ inline bool is_static(const Inspection& inspection, int column) {
   return std::ranges::binary_search(inspection.window->static_tracks, column);
 }
 
-/// Returns what the inliers are counted from and how they were selected, for people: "tracks,
-/// consistent".
+/// Returns what the inliers are counted from, how many of these the last frame does not see, and
+/// how the inliers were selected, for people: "tracks, 12 lost, consistent".
 std::string inliers_note(const Inspection& inspection);
 
 /// Returns the jumps of the ground truth within the window; empty without truth.

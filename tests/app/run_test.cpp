@@ -63,6 +63,9 @@ TEST(Run, DeskHasAllDocumentedKeys) {
   EXPECT_GT(j["metrics"]["pne_bound_deg"], 0);
   EXPECT_LT(j["plane"]["normal"][2], 0);
   EXPECT_EQ(j["frames"].size(), 30U);
+  EXPECT_EQ(j["frames"][0]["lost"], 0);
+  EXPECT_GT(j["window"]["lost"], 0);
+  EXPECT_EQ(j["window"]["lost"], j["frames"][29]["lost"]);
   EXPECT_EQ(j["points"].size(), j["window"]["inliers"]);
   for (const char* key : {"track", "ransac", "rotations", "initialize", "optimize", "total"})
     EXPECT_GE(j["timing_ms"][key], 0) << key;

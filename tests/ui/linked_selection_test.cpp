@@ -176,6 +176,45 @@ TEST_F(LinkedSelection, ExcludedTracksAreNoOutliers) {
   EXPECT_EQ(track_style(excluding, kFrame - kStart, column).sign, Sign::dot);
 }
 
+TEST_F(LinkedSelection, LostTracksHaveTheirSignWhereTheyWereLastSeen) {
+  const Inspection& inspection = *inspection_;
+  constexpr int kLate = 24;  // in the window
+  apply(state_, GoToFrame{kStart + kLate});
+  draw_times(3);
+  const ImageMapping mapping =
+      map_image(state_.document.recording->camera, image(), state_.view.image_zoom);
+  const auto on_screen = [&](int column) {
+    const auto place = place_of_sign(inspection, kLate, column);
+    return place ? std::optional(to_screen(mapping, *place)) : std::nullopt;
+  };
+  const auto is_alone = [&](int column) {
+    for (int other = 0; other < inspection.tracks->track_count(); ++other)
+      if (const auto at = on_screen(other);
+          other != column && at && (*at - *on_screen(column)).norm() < 12)
+        return false;
+    return true;
+  };
+  int lost = 0, pointed_at = 0;
+  for (int column = 0; column < inspection.tracks->track_count(); ++column) {
+    const SignStyle look = track_style(inspection, kLate, column);
+    EXPECT_EQ(look.sign == Sign::diamond, !inspection.tracks->seen(kLate, column)) << column;
+    if (look.sign != Sign::diamond) continue;
+    EXPECT_EQ(look.rgb, color_of(Role::lost));
+    ++lost;
+    int last = kLate;
+    while (!inspection.tracks->seen(last, column)) --last;
+    ASSERT_EQ(place_of_sign(inspection, kLate, column),
+              inspection.tracks->raw_px[last].col(column));
+    if (!is_alone(column)) continue;
+    ++pointed_at;
+    point_at(*on_screen(column));
+    EXPECT_EQ(state_.hover.track, inspection.tracks->ids[column]);
+  }
+  EXPECT_EQ(lost, lost_count(*inspection.window, kLate));
+  EXPECT_GT(pointed_at, 3);
+  EXPECT_FALSE(place_of_sign(inspection, 30, 0)) << "outside of the window";
+}
+
 TEST_F(LinkedSelection, RightClickInTheImageOffersToPutTheCubeThere) {
   const Vector2d at = (image().min + 0.6 * image().size).array().floor();
   click(at, 1);

@@ -11,6 +11,7 @@
 namespace gpo {
 
 std::string number_text(double value, int most) {
+  if (!std::isfinite(value)) return "\u2013";
   const double size = std::abs(value);
   const int decimals = size >= 100 ? 0 : size >= 10 ? 1 : size >= 1 ? 2 : 3;
   const int shown = std::min(decimals, most);
@@ -18,7 +19,7 @@ std::string number_text(double value, int most) {
 }
 
 std::string two_decimals(const std::optional<double>& value) {
-  return value ? fmt::format("{:.2f}", *value) : "\u2013";
+  return value && std::isfinite(*value) ? fmt::format("{:.2f}", *value) : "\u2013";
 }
 
 std::string length_text(double meters) {
@@ -29,7 +30,7 @@ std::string length_text(double meters) {
 std::string angle_text(double degrees) { return number_text(degrees, 3) + "\u00b0"; }
 
 std::string sigma_text(double degrees) {
-  return degrees > 90 ? "undetermined" : "\u00b1" + angle_text(degrees);
+  return degrees <= 90 ? "\u00b1" + angle_text(degrees) : "undetermined";  // NaN, too
 }
 
 std::string milliseconds_text(double milliseconds) {
@@ -44,6 +45,8 @@ std::string difference_text(double value, double reference, std::string (*text)(
 }
 
 std::string uncertain_text(double value, double sigma) {
+  if (!std::isfinite(value) || !std::isfinite(sigma))
+    return number_text(value, 3) + " \u00b1\u2013";
   constexpr int kMost = 6;
   const int decimals =
       sigma > 0 ? std::clamp(1 - static_cast<int>(std::floor(std::log10(sigma))), 0, kMost) : kMost;

@@ -24,6 +24,7 @@ constexpr std::uint64_t in_themes(std::uint32_t dark, std::uint32_t light) {
 enum class Role : std::uint64_t {
   // Data.
   inlier = in_themes(0x1FCB93, 0x1FCB93), outlier = in_themes(0xF0503C, 0xF0503C),
+  lost = in_themes(0xFFC400, 0xFFC400),  ///< tracks where they were last seen
   residual = in_themes(0xF0E442, 0xF0E442), truth = in_themes(0xA9AEB6, 0x6E757E),
   cube_base = in_themes(0x2BD67B, 0x2BD67B), cube_edge = in_themes(0xE4F3EA, 0x3B6B52),
   cube_face = in_themes(0x9FE8C4, 0x9FE8C4),
@@ -103,9 +104,9 @@ struct ChoiceRow {
 // clang-format off
 inline constexpr auto kColorings = std::to_array<ChoiceRow<Coloring>>({
     {Coloring::plane, "plane", "Color by plane",
-     "Colors tracks and points by their plane; outliers are red crosses"},
+     "Colors tracks and points by their plane; outliers are red crosses, lost tracks diamonds"},
     {Coloring::residual, "residual", "Color by residual",
-     "Colors inliers of the leading plane by their RMS reprojection error over the window [px]"},
+     "Colors inliers by the RMS of their residuals of the solution over the window [px]"},
     {Coloring::depth, "depth", "Color by depth",
      "Colors tracks and points by their depth in the reference camera [plane distances]"},
     {Coloring::life, "life", "Color by life",
@@ -168,10 +169,11 @@ inline constexpr const char* kCubeMenu = "Cube style";
 
 // clang-format off
 inline constexpr auto kViewToggles = std::to_array<ViewToggle>({
-    {"tracks", "Tracks", 0, &ViewToggles::tracks, "Shows inliers as circles, outliers as crosses"},
+    {"tracks", "Tracks", 0, &ViewToggles::tracks, 
+     "Shows inliers as circles, outliers as crosses, lost tracks as diamonds where last seen"},
     {"tails", "Tails", 'T', &ViewToggles::tails, "Shows each track's path over the last frames"},
     {"residuals", "Residual vectors", 'E', &ViewToggles::residuals,
-     "Shows residuals from observed to predicted position, enlarged"},
+     "Shows residuals of the solution, from observed to predicted position, enlarged"},
     {"cube", "Cube", 'B', &ViewToggles::cube, "Shows a cube on each estimated plane", "", true},
     {"wireframe", "Wireframe cube", 0, &ViewToggles::wireframe,
      "Shows only the cube's edges, without faces and shadow", kCubeMenu},

@@ -68,7 +68,8 @@ ordered_json frames_json(const Inspection& inspection) {
          {"timestamp_ns", window.timestamps_ns[i]},
          {"p_wc", ok ? vector_json(cameras[i].p_wc) : ordered_json(nullptr)},
          {"q_wc_xyzw", ok ? vector_json(quaternion_xyzw(cameras[i].R_wc)) : ordered_json(nullptr)},
-         {"inliers", window.inlier_count(i)}});
+         {"inliers", window.inlier_count(i)},
+         {"lost", lost_count(window, i)}});
   return frames;
 }
 
@@ -385,7 +386,8 @@ ordered_json to_json(const Inspection& inspection) {
   json["window"] = {{"start", window.start},
                     {"frames", window.frame_count()},
                     {"tracks", window.track_count()},
-                    {"inliers", window.inlier_count(0)}};
+                    {"inliers", window.inlier_count(0)},
+                    {"lost", lost_count(window, window.frame_count() - 1)}};
   json["settings"] = settings_json(inspection);
   json["unused_settings"] = unused_json(inspection);
   if (!inspection.rotations_note.empty()) json["rotations_note"] = inspection.rotations_note;

@@ -49,9 +49,10 @@ std::string rotations_text(const Inspection& inspection) {
                          : "estimated from the window");
 }
 
-/// Beyond a right angle a standard deviation of a direction means nothing.
+/// Beyond a right angle, and if it is not a number, a standard deviation of a direction means
+/// nothing.
 std::string sigma_text(double sigma_deg, int digits) {
-  return sigma_deg > 90 ? "undetermined" : fmt::format("{:.{}f} deg", sigma_deg, digits);
+  return sigma_deg <= 90 ? fmt::format("{:.{}f} deg", sigma_deg, digits) : "undetermined";
 }
 
 std::string normal_text(const Uncertainty& u, CameraSource source) {

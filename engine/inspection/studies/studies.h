@@ -66,6 +66,11 @@ std::shared_ptr<const NormalStudy> study_normals(const Inspection& inspection,
 /// Returns the true normal in the reference camera, towards it; nullopt if unknown.
 std::optional<Eigen::Vector3d> true_normal(const Inspection& inspection);
 
+/// Returns whether a track that starts in the reference frame has no observation in a frame of the
+/// window. Excluded tracks have none at all and are not lost.
+bool is_lost(const Window& window, int frame, int track);
+int lost_count(const Window& window, int frame);
+
 /// Observation of a track, and its prediction from its plane, the poses and the reference frame.
 struct ResidualVector {
   int track;
@@ -85,16 +90,27 @@ std::vector<double> residuals_px(const Inspection& inspection, int frame_in_wind
 struct TrackFrame {
   int frame = 0;           ///< in the recording
   Eigen::Vector2d raw_px;  ///< observation
-  /// Transfer error by the frame's homography, undistorted, which RANSAC compares with its
-  /// threshold; nullopt in the reference frame.
+  /// Transfer error by the frame's homography of the track's plane, or of the leading plane if it
+  /// is on none, undistorted [px]; nullopt in the reference frame or without a homography. It
+  /// decides whether the track is an inlier.
   std::optional<double> transfer_px = {};
-  /// Residual against the track's plane, or the main plane if it is on none, and the poses of the
-  /// result [raw px]; nullopt without a prediction.
+  /// Largest `transfer_px` of an inlier in this frame: the threshold, widened for noisy tracks and
+  /// narrowed for consistent ones. nullopt if there is none: without RANSAC, and for a track on no
+  /// plane, which was judged over the window.
+  std::optional<double> limit_px = {};
+  /// Residual of the solution: against the track's plane, or the main plane if it is on none, and
+  /// the poses of the result [raw px]; nullopt without a prediction. It decides nothing.
   std::optional<double> residual_px = {};
   std::optional<double> forward_backward_px = {};  ///< nullopt if not measured
   bool inlier = false;                             ///< the track is an inlier of the leading plane
   bool on_its_plane = false;                       ///< the same for the plane that the track is on
+
+  bool beyond_limit() const { return transfer_px && limit_px && *transfer_px > *limit_px; }
 };
+
+/// Returns what decided in a frame, and the residual, which did not: "transfer error 1.29 px of at
+/// most 2 px: inlier; residual of the solution 4.12 px". Empty if neither is known.
+std::string decision_text(const TrackFrame& seen);
 
 /// History of a track of a window.
 struct TrackLife {
@@ -108,6 +124,9 @@ struct TrackLife {
 
 /// Returns the history of a column of the window; for an excluded track as it was observed.
 TrackLife track_life(const Inspection& inspection, int column);
+
+/// Returns the histories of all columns of the window.
+std::vector<TrackLife> track_lives(const Inspection& inspection);
 
 /// Returns the RMS of the residuals in the frames where the track is an inlier of its plane;
 /// nullopt without any.

@@ -313,6 +313,31 @@ TEST(WindowPlanes, SeparateTwoLayersAndJudgeATrackByTheFramesThatSeeIt) {
   EXPECT_TRUE(std::ranges::binary_search(found.planes[0], 3));
 }
 
+TEST(WindowPlanes, HaveTheErrorsByWhichTheirTracksWereChosen) {
+  int on = 0, off = 0;
+  for (const double noise_px : {0.2, 0.4})
+    for (std::uint64_t seed = 1; seed <= 10; ++seed) {
+      const Room room = simulate_room({.noise_px = noise_px,
+                                       .planes = floor_and_walls(),
+                                       .shares = {0.45, 0.25, 0.1},
+                                       .seed = seed});
+      const std::vector<PlaneErrors> errors = plane_errors(room.window);
+      ASSERT_EQ(errors.size(), room.window.planes.size());
+      for (int k = 0; k < std::ssize(errors); ++k) {
+        EXPECT_GE(errors[k].gate_px, 0.6 * room.window.threshold_px);
+        EXPECT_LE(errors[k].gate_px, room.window.threshold_px);
+        for (int j = 0; j < room.window.track_count(); ++j) {
+          const auto plane = room.window.plane_of(j);
+          if (plane && plane != k) continue;
+          EXPECT_EQ(errors[k].rms_px[j] <= errors[k].gate_px, plane == k) << seed << " " << j;
+          ++(plane ? on : off);
+        }
+      }
+    }
+  EXPECT_GT(on, 2000);
+  EXPECT_GT(off, 300);
+}
+
 // RMS transfer errors are 1.4 px, the gate is 2 px. With 1 px of noise they are at the gate, and
 // one window in eight is rejected.
 TEST(WindowPlanes, AreFoundFromFewNoisyTracksOrReportTheLargestRejectedSet) {

@@ -93,6 +93,14 @@ TEST(ColorBlindness, EveryoneTellsPlanesFromEachOtherAndFromVerdicts) {
   }
 }
 
+TEST(ColorBlindness, EveryoneTellsLostTracksFromInliersAndOutliers) {
+  const std::uint32_t lost = color_of(Role::lost, Theme::dark);
+  for (int plane = 0; plane < 5; ++plane)
+    EXPECT_GT(distance(lost, plane_color(plane)), 20) << plane;
+  EXPECT_GT(distance(lost, color_of(Role::outlier, Theme::dark)), 30);
+  EXPECT_GT(distance(lost, color_of(Role::text_dim, Theme::dark)), 30) << "excluded";
+}
+
 TEST(ColorBlindness, EveryoneTellsPlaneNormalAndCamerasApart) {
   constexpr double kCameraTint = 0.35;  // share of the text's color in the scene
   for (const Theme theme : {Theme::dark, Theme::light}) {

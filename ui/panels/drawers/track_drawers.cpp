@@ -21,17 +21,18 @@ constexpr ColumnText kLifeColumns[] = {
     {"frame", "Frame of the recording. Click to go there"},
     {"x", "Position in the image as recorded"},
     {"y", "Position in the image as recorded"},
-    {"transfer", "Transfer error of the frame's homography, which RANSAC uses"},
-    {"residual", "Distance to where the estimated plane and poses predict it"},
+    {"transfer", "Transfer error by the frame's homography: decides whether it is an inlier"},
+    {"at most", "Limit of the transfer error in this frame; a dash if the window decides"},
+    {"residual", "Residual of the solution: distance to where plane and poses predict it"},
     {"fwd-bwd", "Forward-backward error: distance after tracking to the next frame and back"},
-    {"", "Inlier: a green circle; outlier: a red cross"}};
+    {"", "Inlier: a circle in the color of its plane; outlier: a red cross"}};
 
 constexpr std::array<ColumnText, 7> kTrackColumns{
     {{"track", "Id. Click to select, Ctrl+click to add or remove, Shift+click for a range"},
      {"seen", "Frames that see it, without the reference frame"},
      {"inlier", "Number of these in which it is an inlier of its plane"},
      {"plane", "Its plane of the window; 1 has the most tracks"},
-     {"residual [px]", "RMS transfer error as an inlier of the leading plane"},
+     {"residual [px]", "RMS residual of the solution in the frames where it is an inlier"},
      {"depth [d]", "Depth in the reference camera, in plane distances d"},
      {"verdict", "Inlier, or the reason for rejection"}}};
 constexpr ColumnText kDepthInMeters{"depth [m]", "Depth in the reference camera, in meters"};
@@ -43,18 +44,21 @@ void text_cells(std::initializer_list<std::string> texts) {
   }
 }
 
-void draw_frame(const TrackFrame& frame, bool current, Commands& commands) {
+void draw_frame(const PanelContext& ui, const TrackLife& life, const TrackFrame& frame) {
   ImGui::TableNextRow();
   ImGui::TableNextColumn();
   const std::string label = std::to_string(frame.frame);
+  const bool current = frame.frame == ui.state.view.frame;
   if (ImGui::Selectable(label.c_str(), current, ImGuiSelectableFlags_SpanAllColumns))
-    push(commands, GoToFrame{frame.frame});
+    push(ui.commands, GoToFrame{frame.frame});
   text_cells({two_decimals(frame.raw_px.x()), two_decimals(frame.raw_px.y())});
-  text_cells({two_decimals(frame.transfer_px), two_decimals(frame.residual_px)});
-  text_cells({two_decimals(frame.forward_backward_px)});
+  text_cells({two_decimals(frame.transfer_px), two_decimals(frame.limit_px)});
+  text_cells({two_decimals(frame.residual_px), two_decimals(frame.forward_backward_px)});
   ImGui::TableNextColumn();
-  sign_at_cursor(frame.inlier ? Sign::circle : Sign::cross,
-                 color_of(frame.inlier ? Role::inlier : Role::outlier));
+  const Inspection& inspection = *ui.inspection();
+  const SignStyle look =
+      track_style(inspection, frame.frame - inspection.window->start, life.column);
+  sign_at_cursor(look.sign, look.rgb);
 }
 
 void draw_life(const PanelContext& ui, const TrackLife& life, const ImVec2& size) {
@@ -67,15 +71,15 @@ void draw_life(const PanelContext& ui, const TrackLife& life, const ImVec2& size
   clipper.Begin(static_cast<int>(life.frames.size()));
   while (clipper.Step())
     for (int i = clipper.DisplayStart; i < clipper.DisplayEnd; ++i)
-      draw_frame(life.frames[i], life.frames[i].frame == ui.state.view.frame, ui.commands);
+      draw_frame(ui, life, life.frames[i]);
   ImGui::PopFont();
   ImGui::EndTable();
 }
 
 Chart life_chart(const TrackLife& life) {
   Chart chart{"", "frame", "error [px]", false, {}};
-  const auto add = [&](const char* name, Role role, auto TrackFrame::*value) {
-    Curve curve{name, color_of(role), false, {}, {}, {}, {}};
+  const auto add = [&](const char* name, Role role, auto TrackFrame::*value, bool dotted = false) {
+    Curve curve{name, color_of(role), dotted, {}, {}, {}, {}};
     for (const TrackFrame& frame : life.frames) {
       curve.x.push_back(frame.frame);
       curve.y.push_back((frame.*value).value_or(std::numeric_limits<double>::quiet_NaN()));
@@ -83,6 +87,7 @@ Chart life_chart(const TrackLife& life) {
     chart.curves.push_back(std::move(curve));
   };
   add("transfer", Role::inlier, &TrackFrame::transfer_px);
+  add("at most", Role::inlier, &TrackFrame::limit_px, true);
   add("residual", Role::residual, &TrackFrame::residual_px);
   add("fwd-bwd", Role::rotation, &TrackFrame::forward_backward_px);
   return chart;
@@ -288,9 +293,11 @@ void tracks_drawer(const PanelContext& ui, const Rectangle& place) {
   ImGui::SetCursorPos({12 * s, 6 * s});
   ImGui::BeginGroup();
   ImGui::PushFont(font(Font::small));
+  const Window& window = *ui.inspection()->window;
   colored_text(Role::text_dim,
-               fmt::format("{}, {} selected \u00b7 click a column title to sort",
+               fmt::format("{}, {} lost, {} selected \u00b7 click a column title to sort",
                            counted(ui.inspection()->tracks->track_count(), "track"),
+                           lost_count(window, window.frame_count() - 1),
                            ui.state.selection.tracks.size()));
   copy_buttons(ui);
   const float top = ImGui::GetCursorPosY();

@@ -74,8 +74,8 @@ std::vector<ComparedColumn> make_columns() {
        .value = [](const Inspection& i) -> Value { return i.window->inlier_count(0); },
        .less_is_better = false},
       {.title = "Transfer RMS",
-       .meaning = "RMS distance of the inliers from their reference positions, transferred by "
-                  "plane and cameras",
+       .meaning = "RMS of the inliers' residuals of the solution: distances from their reference "
+                  "positions, transferred by plane and cameras",
        .unit = "px",
        .text = px_text,
        .value = [](const Inspection& i) -> Value { return i.initialization->transfer_rms_px; },
@@ -99,11 +99,12 @@ std::vector<ComparedColumn> make_columns() {
        .value = [](const Inspection& i) -> Value { return i.timing.initialize; },
        .is_time = true}};
   columns.insert(columns.end(), metrics().begin(), metrics().end());
-  columns.push_back({.title = "Normal \u03c3",
-                     .meaning = "Normal uncertainty (1 sigma, first order), without ground truth",
-                     .unit = "deg",
-                     .text = [](double deg) { return deg > 90 ? "undetermined" : angle_text(deg); },
-                     .value = normal_sigma});
+  columns.push_back(
+      {.title = "Normal \u03c3",
+       .meaning = "Normal uncertainty (1 sigma, first order), without ground truth",
+       .unit = "deg",
+       .text = [](double deg) { return deg <= 90 ? angle_text(deg) : "undetermined"; },
+       .value = normal_sigma});
   return columns;
 }
 
@@ -324,13 +325,12 @@ CurveFacts curve_facts(const WorkbenchState& state) {
 std::vector<TrackRow> track_rows(const Inspection& inspection) {
   const Window& window = *inspection.window;
   std::vector<TrackRow> rows;
-  for (int column = 0; column < inspection.tracks->track_count(); ++column) {
-    const TrackLife life = track_life(inspection, column);
-    const auto plane = window.plane_of(column);
+  for (const TrackLife& life : track_lives(inspection)) {
+    const auto plane = window.plane_of(life.column);
     rows.push_back({.id = life.id,
                     .seen = static_cast<int>(std::ranges::count_if(
                         life.frames, [&](const auto& f) { return f.frame != window.start; })),
-                    .inlier = inlier_frames(window, column, plane),
+                    .inlier = inlier_frames(window, life.column, plane),
                     .plane = plane ? std::optional(*plane + 1) : std::nullopt,
                     .rms_px = rms_residual_px(life),
                     .depth = life.depth,

@@ -99,8 +99,8 @@ ResultRow rms_row(const Initialization& result) {
   ResultRow row{.label = kTransferRms,
                 .value = number_text(*result.transfer_rms_px, 2) + " px",
                 .tooltip =
-                    "RMS distance of the inliers from their reference positions, transferred by "
-                    "plane and cameras"};
+                    "RMS of the inliers' residuals of the solution: distances from their "
+                    "reference positions, transferred by plane and cameras"};
   if (!result.reprojection_rms_px) return row;
   row.note = "reproj. " + number_text(*result.reprojection_rms_px, 2) + " px";
   row.tooltip += ". Reprojection RMS: the same from the projected map points";
@@ -128,7 +128,8 @@ ResultGroup result_group(const Inspection& inspection) {
         .value = fmt::format("{} / {}", window.inlier_count(0), used_tracks(inspection)),
         .note = inliers_note(inspection),
         .tooltip = "Tracks that agree with the homographies of the plane, and all tracks that are "
-                   "not excluded"}}};
+                   "not excluded. The last frame does not see the lost ones, which may be inliers "
+                   "before"}}};
   group.rows.push_back(rms_row(result));
   group.rows.push_back(
       solver.iterations > 0
@@ -339,6 +340,15 @@ ResultGroup gravity_group(const Inspection& inspection, double cube_side) {
 }
 
 }  // namespace
+
+NormalSigma shown_normal_sigma(const Initialization& result) {
+  if (!result.verdict || !result.verdict->normal_sigma_deg) return {};
+  const std::string sigma = sigma_text(*result.verdict->normal_sigma_deg);
+  const Readiness readiness = result.verdict->readiness;
+  const bool answers = readiness == Readiness::ready || readiness == Readiness::weak;
+  if (result.ok && answers) return {sigma, true};
+  return {"window: normal " + sigma, false};
+}
 
 std::string iterations_text(const SolverReport& solver) {
   const int shown = std::max(0, static_cast<int>(solver.trace.size()) - 1);

@@ -68,6 +68,14 @@ std::vector<FindingRow> finding_rows(const Inspection* inspection);
 /// Returns whether a row has the same text as the verdict's reason.
 bool is_said_by(std::span<const FindingRow> rows, const std::string& reason);
 
+/// The normal uncertainty beside the verdict.
+struct NormalSigma {
+  std::string text = {};   ///< empty if unknown
+  bool of_result = false;  ///< else of the window alone, which is no answer
+};
+/// Returns that of the result, or of the window if the result failed or is degenerate.
+NormalSigma shown_normal_sigma(const Initialization& result);
+
 /// Returns a solver's iterations; with those of discarded attempts, which no curve shows: "42 of
 /// 110".
 std::string iterations_text(const SolverReport& solver);

@@ -295,12 +295,13 @@ void draw_verdict(const PanelContext& ui, const Initialization& result, const Ro
   draw_sign(*ImGui::GetWindowDrawList(), look.sign, middle, look.rgb);
   ImGui::SetCursorPosX(std::round(place.left + 18 * ui.scale));
   colored_text(look.rgb, word);
-  if (const auto& sigma_deg = verdict.normal_sigma_deg) {
-    const std::string sigma = sigma_text(*sigma_deg);
-    const float left = place.right - ImGui::CalcTextSize(sigma.c_str()).x;
+  const NormalSigma sigma = shown_normal_sigma(result);
+  if (!sigma.of_result && !sigma.text.empty()) draw_note(sigma.text, place.right, 0);
+  if (sigma.of_result) {
+    const float left = place.right - ImGui::CalcTextSize(sigma.text.c_str()).x;
     draw_note("normal", left, place.gap);
     continue_line_at(left);
-    ImGui::TextUnformatted(sigma.c_str());
+    ImGui::TextUnformatted(sigma.text.c_str());
   }
   ImGui::PopFont();
   ImGui::PushFont(font(Font::small));

@@ -62,11 +62,8 @@ std::string frame_text(const TrackLife& life, int frame) {
   const auto found = std::ranges::find(life.frames, frame, &TrackFrame::frame);
   if (found == life.frames.end()) return fmt::format("not seen in frame {}\n", frame);
   std::string text = fmt::format("at ({:.2f}, {:.2f}) px\n", found->raw_px.x(), found->raw_px.y());
-  if (found->residual_px) text += fmt::format("residual {:.2f} px", *found->residual_px);
-  if (found->transfer_px)
-    text += fmt::format(
-        "{}transfer error {:.2f} px", found->residual_px ? " \u00b7 " : "", *found->transfer_px);
-  if (found->residual_px || found->transfer_px) text += "\n";
+  if (const std::string decision = decision_text(*found); !decision.empty())
+    text += decision + "\n";
   return text;
 }
 

@@ -1,11 +1,13 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
+#include "engine/inspection/studies/studies.h"
 #include "engine/recording/companions/companion_files.h"
 #include "ui/context/gui.h"
 #include "ui/panels/panels.h"
 #include "ui/panels/timeline/timeline_bars.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include <fmt/format.h>
 
@@ -281,10 +283,14 @@ std::string bar_text(const Inspection& inspection, int frame) {
   std::string text = fmt::format("frame {}", frame);
   if (in_window < 0 || in_window >= window.frame_count()) return text;
   text += ": " + counted(window.inlier_count(in_window), "inlier");
+  if (const int lost = lost_count(window, in_window); lost > 0)
+    text += fmt::format(", {} lost", lost);
   if (in_window < static_cast<int>(inspection.motion.size())) {
     const FrameMotion& motion = inspection.motion[in_window];
-    text += fmt::format("\nparallax {:.1f} px, angular rate {:.0f}\u00b0/s",
-                        motion.parallax_px,
+    text += fmt::format("\n{}angular rate {:.0f}\u00b0/s",
+                        std::isfinite(motion.parallax_px)
+                            ? fmt::format("parallax {:.1f} px, ", motion.parallax_px)
+                            : "",
                         motion.rotation_rate_deg_s);
   }
   if (in_window == 0) return text + ". Reference frame: the window starts here";

@@ -267,7 +267,7 @@ Chart residual_histogram(const WindowResiduals& residuals,
                          int frame,
                          bool logarithmic) {
   Chart chart{.title = "Residuals",
-              .x_label = "residual [px]",
+              .x_label = "residual of the solution [px]",
               .y_label = "share [%]",
               .logarithmic = logarithmic};
   const std::vector<double> all = all_of(residuals);
@@ -284,7 +284,8 @@ Chart residual_histogram(const WindowResiduals& residuals,
 }
 
 Chart rms_chart(const WindowResiduals& residuals, const Inspection& shown, const TrackLife* track) {
-  Chart chart{.title = "Frame by frame", .x_label = "frame", .y_label = "residual [px]"};
+  Chart chart{
+      .title = "Frame by frame", .x_label = "frame", .y_label = "residual of the solution [px]"};
   Curve rms{.name = "RMS of the inliers", .rgb = method_rgb(shown)};
   for (std::size_t i = 0; i < residuals.size(); ++i) {
     rms.x.push_back(shown.window->start + static_cast<double>(i));

@@ -57,11 +57,14 @@ void draw_tails(const Canvas& canvas) {
 template <class Chosen>
 void draw_tracks(const Canvas& canvas, const Chosen& chosen) {
   const Tracks& tracks = *canvas.inspection.tracks;
-  for (int track = 0; track < tracks.track_count(); ++track) {
-    if (!tracks.seen(canvas.frame, track) || !chosen(track)) continue;
-    const auto [sign, rgb] = canvas.look(track);
-    draw_sign(canvas.list, sign, canvas.at(tracks.raw_px[canvas.frame].col(track)), rgb);
-  }
+  for (const bool seen : {false, true})  // signs of the lost ones are below
+    for (int track = 0; track < tracks.track_count(); ++track) {
+      if (tracks.seen(canvas.frame, track) != seen || !chosen(track)) continue;
+      const auto place = place_of_sign(canvas.inspection, canvas.frame, track);
+      if (!place) continue;
+      const auto [sign, rgb] = canvas.look(track);
+      draw_sign(canvas.list, sign, canvas.at(*place), rgb);
+    }
 }
 
 void draw_residuals(const Canvas& canvas) {
@@ -217,6 +220,8 @@ LegendRows track_rows(const Canvas& canvas) {
   rows.push_back({Sign::cross, color_of(Role::outlier), counted(outliers, "outlier")});
   if (fixed > 0)
     rows.push_back({Sign::square, color_of(Role::text_dim), fmt::format("{} do not move", fixed)});
+  if (const int lost = lost_count(window, canvas.frame); lost > 0)
+    rows.push_back({Sign::diamond, color_of(Role::lost), fmt::format("{} lost", lost)});
   if (excluded > 0)
     rows.push_back({Sign::dot, color_of(Role::text_dim), fmt::format("{} excluded", excluded)});
   return rows;

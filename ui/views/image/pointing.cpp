@@ -146,8 +146,8 @@ std::optional<int> track_at(const Inspection& inspection,
   if (frame_in_window < 0 || frame_in_window >= tracks.frame_count()) return std::nullopt;
   Nearest nearest{screen_px, reach};
   for (int column = 0; column < tracks.track_count(); ++column)
-    if (tracks.seen(frame_in_window, column))
-      nearest.add(column, to_screen(mapping, tracks.raw_px[frame_in_window].col(column)));
+    if (const auto place = place_of_sign(inspection, frame_in_window, column))
+      nearest.add(column, to_screen(mapping, *place));
   return nearest.found();
 }
 
@@ -222,8 +222,8 @@ void draw_highlight_in_image(const Area& area,
   if (highlight.hovered && highlight.hovered != highlight.focus)
     draw_path(list, tracks, *highlight.hovered, mapping, 0.7);
   const auto ring = [&](int column, double radius, Role role) {
-    if (tracks.seen(frame, column))
-      draw_ring(list, to_screen(mapping, tracks.raw_px[frame].col(column)), radius, role);
+    if (const auto place = place_of_sign(view.inspection, frame, column))
+      draw_ring(list, to_screen(mapping, *place), radius, role);
   };
   for (const int column : highlight.picked)
     ring(column, column == highlight.focus ? 10 : 8, Role::selected);

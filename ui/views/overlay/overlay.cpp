@@ -51,8 +51,8 @@ float overlay_scale() { return font(Font::regular)->FontSize / kFontSize; }
 
 void draw_sign(ImDrawList& list, Sign sign, const ImVec2& c, std::uint32_t rgb) {
   // Marks on data grow less than text: hundreds of them would bury the image.
-  const bool mark =
-      sign == Sign::circle || sign == Sign::thin_circle || sign == Sign::cross || sign == Sign::dot;
+  const bool mark = sign == Sign::circle || sign == Sign::thin_circle || sign == Sign::cross ||
+                    sign == Sign::diamond || sign == Sign::dot;
   const float s = mark ? std::sqrt(overlay_scale()) : overlay_scale();
   const ImU32 color = imgui_color(rgb);
   const ImU32 rim = imgui_color(Role::background, 0.55);
@@ -72,6 +72,9 @@ void draw_sign(ImDrawList& list, Sign sign, const ImVec2& c, std::uint32_t rgb) 
         list.AddLine(at(-3.6F, 3.6F), at(3.6F, -3.6F), paint, width * s);
       }
       return;
+    case Sign::diamond:
+      list.AddQuad(at(-5, 0), at(0, -5), at(5, 0), at(0, 5), rim, 3.2F * s);
+      return list.AddQuad(at(-5, 0), at(0, -5), at(5, 0), at(0, 5), color, 1.5F * s);
     case Sign::dot:
       return list.AddCircleFilled(c, 2.6F * s, color, 16);
     case Sign::line:
@@ -315,10 +318,21 @@ std::vector<int> other_planes(const Window& window) {
 SignStyle track_style(const Inspection& inspection, int frame, int column) {
   if (is_excluded(inspection, column)) return {Sign::dot, color_of(Role::text_dim)};
   if (is_static(inspection, column)) return {Sign::square, color_of(Role::text_dim)};
+  if (is_lost(*inspection.window, frame, column)) return {Sign::diamond, color_of(Role::lost)};
   const auto plane = plane_of_track(*inspection.window, frame, column);
   if (!plane) return {Sign::cross, color_of(Role::outlier)};
   const bool leading = *plane == inspection.window->leader;
   return {leading ? Sign::circle : Sign::thin_circle, plane_color(*plane)};
+}
+
+std::optional<Vector2d> place_of_sign(const Inspection& inspection, int frame, int column) {
+  const Tracks& tracks = *inspection.tracks;
+  if (frame < 0 || frame >= tracks.frame_count()) return std::nullopt;
+  int last = frame;
+  if (is_lost(*inspection.window, frame, column))
+    while (last > 0 && !tracks.seen(last, column)) --last;
+  return tracks.seen(last, column) ? std::optional<Vector2d>(tracks.raw_px[last].col(column))
+                                   : std::nullopt;
 }
 
 SignStyle style_of(Readiness readiness) {
@@ -373,8 +387,8 @@ std::shared_ptr<const TrackColors> track_colors(const Inspection& inspection, Co
   const auto meters = coloring == Coloring::depth ? known_scale(inspection) : std::nullopt;
   TrackColors colors{.coloring = coloring, .in_meters = meters.has_value(), .values = {}};
   std::vector<double> known;
-  for (int column = 0; column < inspection.tracks->track_count(); ++column) {
-    std::optional<double> value = value_of(track_life(inspection, column), coloring);
+  for (const TrackLife& life : track_lives(inspection)) {
+    std::optional<double> value = value_of(life, coloring);
     if (value) known.push_back(*value *= meters.value_or(1));
     colors.values.push_back(value);
   }

@@ -13,7 +13,19 @@
 namespace gpo {
 
 /// Signs for data, the same in views and legends.
-enum class Sign { none, circle, thin_circle, cross, dot, line, square, frustum, disc, triangle };
+enum class Sign {
+  none,
+  circle,
+  thin_circle,
+  cross,
+  dot,
+  line,
+  square,
+  frustum,
+  disc,
+  triangle,
+  diamond
+};
 
 struct LegendRow {
   Sign sign;
@@ -125,8 +137,12 @@ struct SignStyle {
   std::uint32_t rgb = 0;
 };
 /// Returns a circle in the color of the track's plane, heavier for the leading one, an outlier's
-/// cross, or the dim dot of an excluded track.
+/// cross, a lost track's diamond, or the dim dot of an excluded track.
 SignStyle track_style(const Inspection& inspection, int frame, int column);
+
+/// Returns the place of a track's sign: its observation, or that of the last frame before if it is
+/// lost; nullopt if it has none.
+std::optional<Vector2d> place_of_sign(const Inspection& inspection, int frame, int column);
 
 SignStyle style_of(Readiness readiness);
 

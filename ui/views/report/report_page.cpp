@@ -70,8 +70,8 @@ std::string cards_element(const Inspection& inspection) {
     cards += fmt::format("<div><b>{}</b><span>{}</span></div>", html_text(value), html_text(name));
   };
   const Window& window = *inspection.window;
-  if (const auto sigma = normal_sigma_deg(inspection))
-    add(*sigma > 90 ? "undetermined" : fmt::format("\u00B1 {:.3g}\u00B0", *sigma),
+  if (const auto sigma = normal_sigma_deg(inspection); sigma && result.ok)
+    add(*sigma <= 90 ? fmt::format("\u00B1 {:.3g}\u00B0", *sigma) : "undetermined",
         result.uncertainty && !result.uncertainty->own
             ? "normal of the plane, 1 sigma of the window"
             : "normal of the plane, 1 sigma");

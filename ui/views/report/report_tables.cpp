@@ -30,7 +30,7 @@ std::string vector_text(const Vector3d& v, int digits) {
 
 /// Returns a standard deviation of a direction; beyond a right angle it means nothing.
 std::string text_of_sigma(double sigma_deg) {
-  return sigma_deg > 90 ? "undetermined" : fmt::format("{:.3g} deg", sigma_deg);
+  return sigma_deg <= 90 ? fmt::format("{:.3g} deg", sigma_deg) : "undetermined";
 }
 
 /// Collects rows of a quantity, its value, its standard deviation, and what they depend on.
@@ -157,8 +157,10 @@ void add_residuals(Numbers& numbers, const Inspection& inspection) {
   const Initialization& result = *inspection.initialization;
   const auto px = [](double value) { return fmt::format("{:.3f} px", value); };
   if (result.transfer_rms_px)
-    numbers.add(
-        "transfer error, RMS", px(*result.transfer_rms_px), "", "inliers of the main plane");
+    numbers.add("residual of the solution, RMS",
+                px(*result.transfer_rms_px),
+                "",
+                "inliers of the main plane");
   if (result.reprojection_rms_px)
     numbers.add("reprojection error, RMS", px(*result.reprojection_rms_px), "", "the same inliers");
 }
@@ -225,7 +227,8 @@ std::vector<std::pair<const char*, HtmlCell>> comparison_cells(const Inspection&
       {"verdict", {word, word == "no plane" ? "degenerate" : word}},
       {"frames",
        number(fmt::format("{} to {}", window.start, window.start + window.frame_count() - 1))},
-      {"normal, 1 sigma [deg]", decimals(normal_sigma_deg(inspection), 1, 3)},
+      {"normal, 1 sigma [deg]",
+       decimals(result.ok ? normal_sigma_deg(inspection) : std::nullopt, 1, 3)},
       {"inliers", number(fmt::format("{}/{}", row.inliers.value_or(0), row.tracks.value_or(0)))},
       {"reprojection [px]", decimals(result.reprojection_rms_px, 1, 3)},
       {"ATE [mm]", decimals(row.ate_m, 1e3, 2)},

@@ -200,7 +200,7 @@ LegendRows legend_rows(const FrameView& view) {
       const double sigma_deg = inspection.inertial->gravity_sigma_deg;
       add(Sign::line,
           color_of(Role::gravity),
-          sigma_deg > 90 ? "up, undetermined" : "up, uncertainty " + angle_text(sigma_deg));
+          sigma_deg <= 90 ? "up, uncertainty " + angle_text(sigma_deg) : "up, undetermined");
     }
   }
   if (inspection.initialization->refused)

@@ -1,6 +1,8 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
+#include "engine/frontend/inliers.h"
 #include "engine/geometry/statistics.h"
+#include "engine/inspection/report/report.h"
 #include "engine/inspection/studies/studies.h"
 #include "engine/methods/common/window_checks.h"
 #include "engine/recording/layouts/open_recording.h"
@@ -8,6 +10,7 @@
 #include "tests/engine/test_folder.h"
 
 #include <algorithm>
+#include <cstdio>
 #include <numeric>
 #include <sstream>
 
@@ -80,10 +83,105 @@ TEST_F(TrackLifeTest, HasEveryFrameWithItsErrorsAlsoForAnOutlier) {
   EXPECT_GT(*life.depth, 0);
   const TrackLife outlier = track_life(inspection, 2);
   EXPECT_THAT(outlier.verdict,
-              MatchesRegex("outlier in [0-9]+ of 29 frames: transfer error up to [0-9.]+ px above "
-                           "2.0 px"));
+              MatchesRegex("outlier in [0-9]+ of 29 frames: transfer error up to [0-9.]+ px of at "
+                           "most 2 px"));
   EXPECT_GT(*outlier.frames.back().residual_px, 5);
   EXPECT_FALSE(outlier.depth);
+}
+
+TEST(TrackFrames, NameTheNumberThatDecidesFirst) {
+  TrackFrame seen{.transfer_px = 1.291, .limit_px = 2, .residual_px = 4.12, .on_its_plane = true};
+  EXPECT_EQ(decision_text(seen),
+            "transfer error 1.29 px of at most 2 px: inlier; residual of the solution 4.12 px");
+  seen.limit_px.reset();
+  EXPECT_EQ(decision_text(seen),
+            "transfer error 1.29 px: inlier; residual of the solution 4.12 px");
+  seen.residual_px.reset();
+  seen.on_its_plane = false;
+  EXPECT_EQ(decision_text(seen), "transfer error 1.29 px: outlier over the window");
+  seen.limit_px = 2;
+  EXPECT_EQ(decision_text(seen), "transfer error 1.29 px of at most 2 px: outlier over the window");
+  seen.limit_px = 1.25;
+  EXPECT_EQ(decision_text(seen), "transfer error 1.29 px of at most 1.25 px: outlier");
+  seen.limit_px = 1.2896;
+  EXPECT_EQ(decision_text(seen), "transfer error 1.2910 px of at most 1.2896 px: outlier")
+      << "two decimals would look equal";
+  EXPECT_EQ(decision_text({.residual_px = 0.5}), "residual of the solution 0.50 px");
+  EXPECT_EQ(decision_text({}), "");
+}
+
+/// Returns an inspection of a window by the front end; a tenth of its tracks is noisier.
+Inspection selected_by(Inliers inliers, double off_plane = 0.2) {
+  const Simulation truth =
+      simulate({.motion = Motion::orbit, .noise_px = 0.4, .off_plane = off_plane});
+  auto recording = std::make_shared<Recording>();
+  recording->camera = Camera{640, 480, 500, 500, 319.5, 239.5, Distortion::none, {}};
+  auto tracks = std::make_shared<Tracks>();
+  tracks->raw_px = truth.window.points_px;
+  tracks->ids.resize(truth.window.track_count());
+  std::iota(tracks->ids.begin(), tracks->ids.end(), 0);
+  Eigen::VectorXd sigma_px = Eigen::VectorXd::Constant(tracks->track_count(), 0.4);
+  for (int j = 5; j < tracks->track_count(); j += 10) sigma_px[j] = 1.6;
+  tracks->sigma_px.assign(tracks->raw_px.size(), sigma_px);
+  Inspection inspection;
+  inspection.recording = recording;
+  inspection.tracks = tracks;
+  inspection.settings.options.ransac = true;
+  inspection.window = std::make_shared<const Window>(
+      make_window(*tracks, recording->camera, truth.window.timestamps_ns, {.inliers = inliers}));
+  inspection.initialization = std::make_shared<const Initialization>(failed("not computed"));
+  return inspection;
+}
+
+TEST(TrackLives, HaveTheLimitThatDecided) {
+  for (const Inliers inliers : {Inliers::per_frame, Inliers::consistent, Inliers::planes}) {
+    SCOPED_TRACE(static_cast<int>(inliers));
+    const Inspection inspection = selected_by(inliers);
+    const Window& window = *inspection.window;
+    ASSERT_EQ(window.inliers, inliers);
+    const bool by_window = inliers == Inliers::consistent;
+    int agreeing = 0, disagreeing = 0;
+    for (const TrackLife& life : track_lives(inspection))
+      for (const TrackFrame& seen : life.frames) {
+        if (seen.frame == 0) continue;
+        if (!seen.limit_px) {
+          EXPECT_TRUE(inliers == Inliers::planes && !window.plane_of(life.column));
+          continue;
+        }
+        EXPECT_EQ(*seen.limit_px > 2, life.column % 10 == 5) << "noisier tracks have wider gates";
+        if (seen.on_its_plane) EXPECT_FALSE(seen.beyond_limit()) << life.id;
+        if (!by_window) EXPECT_EQ(seen.on_its_plane, !seen.beyond_limit()) << life.id;
+        ++(seen.beyond_limit() ? disagreeing : agreeing);
+      }
+    EXPECT_GT(agreeing, 3000);
+    EXPECT_GT(disagreeing, inliers == Inliers::planes ? -1 : 100);
+  }
+}
+
+TEST(TrackLives, HaveNoLimitWithoutRansac) {
+  Inspection inspection = selected_by(Inliers::per_frame);
+  inspection.settings.options.ransac = false;
+  EXPECT_FALSE(track_life(inspection, 2).frames[5].limit_px);
+}
+
+TEST(TrackLives, PutTheErrorOverTheWindowFirstForATrackOnNoPlane) {
+  const Inspection inspection = selected_by(Inliers::planes);
+  int off = 0;
+  for (const TrackLife& life : track_lives(inspection)) {
+    if (inspection.window->plane_of(life.column)) continue;
+    double px = 0, limit_px = 0;
+    ASSERT_EQ(std::sscanf(life.verdict.c_str(),
+                          "on no plane: its RMS transfer error %lf px of at most %lf px from plane "
+                          "1 over the window",
+                          &px,
+                          &limit_px),
+              2)
+        << life.verdict;
+    EXPECT_GT(px, limit_px);
+    EXPECT_EQ(limit_px > 2.5, life.column % 10 == 5) << life.verdict;
+    ++off;
+  }
+  EXPECT_GT(off, 20);
 }
 
 TEST_F(TrackLifeTest, AcceptsATrackOnAnotherPlane) {
@@ -134,6 +232,29 @@ TEST_F(TrackLifeTest, EndsWhereTheTrackIsLost) {
   EXPECT_EQ(life.verdict,
             "inlier in 16 of 16 frames; lost in frame 117: forward-backward error 0.83 px above "
             "0.5 px");
+}
+
+TEST_F(TrackLifeTest, CountsLostTracksApart) {
+  end_140();
+  tracks->ends.clear();
+  EXPECT_EQ(track_life(inspection, 140).verdict, "inlier in 16 of 16 frames; lost in frame 117")
+      << "tracks from a file have no reason";
+  EXPECT_FALSE(is_lost(*window, 16, 140));
+  EXPECT_TRUE(is_lost(*window, 17, 140));
+  EXPECT_EQ(lost_count(*window, 16), 0);
+  EXPECT_EQ(lost_count(*window, 29), 1);
+  EXPECT_EQ(inliers_note(inspection), "tracks, 1 lost");
+  hide(141, 0);
+  inspection.settings.exclude = {1141};
+  EXPECT_EQ(lost_count(*window, 29), 1) << "an excluded track is not lost";
+  const auto json = to_json(inspection);
+  EXPECT_EQ(json["window"]["lost"], 1);
+  EXPECT_EQ(json["frames"][16]["lost"], 0);
+  EXPECT_EQ(json["frames"][17]["lost"], 1);
+  EXPECT_THAT(to_text(inspection), HasSubstr(" of 149 tracks, 1 lost\n"));
+  end_140();
+  inspection.settings.exclude = {1140};
+  EXPECT_EQ(track_life(inspection, 140).verdict, "excluded");
 }
 
 TEST_F(TrackLifeTest, KeepsTheErrorsOfAnExcludedTrack) {
@@ -212,7 +333,10 @@ TEST_F(TracksTable, HasThePlaneOfATrackAndReportsWhyItIsAnOutlierOrLost) {
   EXPECT_EQ(std::ranges::count(row_of(100, 1002), ','), 5)
       << "commas of a sentence would separate cells";
   window->planes.resize(2);
-  for (WindowPlane& plane : window->planes) plane.inlier = window->inlier;
+  for (WindowPlane& plane : window->planes) {
+    plane.H_i1 = window->H_i1;
+    plane.inlier = window->inlier;
+  }
   window->planes[0].tracks = {139};
   window->planes[1].tracks = {2, 5};
   EXPECT_THAT(row_of(110, 1139), HasSubstr(",1,inlier,"));

@@ -13,6 +13,7 @@
 
 #include <cmath>
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 
 namespace gpo {
@@ -114,6 +115,45 @@ TEST(Results, NameTheInlierSelection) {
   window.inliers = Inliers::consistent;
   inspection.window = std::make_shared<const Window>(window);
   EXPECT_EQ(rows_of(&inspection).at("Inliers").note, "tracks, consistent");
+}
+
+TEST(Results, CountLostTracksApart) {
+  Inspection inspection = inspected();
+  Window window = *inspection.window;
+  window.points_px.emplace_back(window.points_px[0]).col(1).setConstant(NAN);
+  inspection.window = std::make_shared<const Window>(window);
+  const ResultRow row = rows_of(&inspection).at("Inliers");
+  EXPECT_EQ(row.value, "2 / 3");
+  EXPECT_EQ(row.note, "tracks, 1 lost");
+}
+
+TEST(Results, ShowNoSigmaAsAnAnswerUnlessThereIsOne) {
+  Initialization result;
+  EXPECT_EQ(shown_normal_sigma(result).text, "");
+  result.verdict = Verdict{.readiness = Readiness::ready, .normal_sigma_deg = 0.31};
+  EXPECT_EQ(shown_normal_sigma(result).text, "window: normal \u00b10.310\u00b0") << "it failed";
+  EXPECT_FALSE(shown_normal_sigma(result).of_result);
+  result.ok = true;
+  EXPECT_EQ(shown_normal_sigma(result).text, "\u00b10.310\u00b0");
+  EXPECT_TRUE(shown_normal_sigma(result).of_result);
+  result.verdict->readiness = Readiness::weak;
+  EXPECT_TRUE(shown_normal_sigma(result).of_result);
+  for (const Readiness readiness : {Readiness::degenerate, Readiness::no_plane}) {
+    result.verdict->readiness = readiness;
+    EXPECT_FALSE(shown_normal_sigma(result).of_result);
+  }
+}
+
+TEST(Texts, ShowDashesForWhatIsNotANumber) {
+  const double nan = std::nan("");
+  for (const double unknown : {nan, -nan, INFINITY}) {
+    EXPECT_EQ(number_text(unknown, 3), "\u2013");
+    EXPECT_EQ(angle_text(unknown), "\u2013\u00b0");
+    EXPECT_EQ(two_decimals(unknown), "\u2013");
+    EXPECT_EQ(sigma_text(unknown), "undetermined");
+    EXPECT_EQ(uncertain_text(0.5, unknown), "0.500 \u00b1\u2013");
+    EXPECT_EQ(uncertain_text(unknown, 0.1), "\u2013 \u00b1\u2013");
+  }
 }
 
 TEST(Results, ShowTheUncertaintyOfTruthFromTheBoard) {
@@ -304,6 +344,25 @@ TEST(TimeLine, ShowsComparableVerdictsWhereThereAreAny) {
   for (Verdict& verdict : inspection.comparable_growth) verdict.readiness = Readiness::weak;
   EXPECT_THAT(bar_text(inspection, 30),
               AllOf(HasSubstr("weak"), HasSubstr("at least as wide as the whole window's")));
+}
+
+TEST(TimeLine, CountsLostTracksApart) {
+  Inspection inspection = made_inspection({.images = false});
+  const Window& window = *inspection.window;
+  ASSERT_GT(lost_count(window, 25), 10);
+  EXPECT_THAT(
+      bar_text(inspection, 30),
+      HasSubstr(fmt::format(
+          "frame 30: {} inliers, {} lost", window.inlier_count(25), lost_count(window, 25))));
+  EXPECT_THAT(bar_text(inspection, 5), Not(HasSubstr("lost")));
+}
+
+TEST(TimeLine, OmitsAnUnknownParallax) {
+  Inspection inspection = made_inspection({.images = false});
+  inspection.motion.assign(30, {.parallax_px = 3.25, .rotation_rate_deg_s = 40});
+  inspection.motion[2].parallax_px = std::nan("");
+  EXPECT_THAT(bar_text(inspection, 6), HasSubstr("\nparallax 3.2 px, angular rate 40"));
+  EXPECT_THAT(bar_text(inspection, 7), HasSubstr("\nangular rate 40"));
 }
 
 TEST(TimeLine, ShowsTheVerdictOnTheWindowThatEndsAtABar) {

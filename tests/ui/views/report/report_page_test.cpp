@@ -122,6 +122,16 @@ TEST(ReportPage, ListsFindings) {
     EXPECT_THAT(page, HasSubstr(text));
 }
 
+TEST(ReportPage, ShowsNoSigmaOfAFailedInitialization) {
+  ReportSection section = made_section("made", {.ok = false});
+  auto inspection = std::make_shared<Inspection>(*section.inspection);
+  auto result = std::make_shared<Initialization>(*inspection->initialization);
+  result->verdict = Verdict{.normal_sigma_deg = 0.3125};
+  inspection->initialization = result;
+  section.inspection = inspection;
+  EXPECT_THAT(report_page({.sections = {section}, .program = "1"}), Not(HasSubstr("0.312")));
+}
+
 TEST(ReportPage, NamesAnUncertaintyThatIsNotTheMethodsOwn) {
   ReportSection section = made_section("made", {.normal_sigma_deg = 0.5});
   const auto page = [&] { return report_page({.sections = {section}, .program = "1"}); };
