@@ -86,7 +86,7 @@ TEST(Orientations, AreDecidedByTracksOffThePlane) {
       ASSERT_TRUE(result.ok);
       EXPECT_TRUE(result.ambiguity->undecided.empty());
       ASSERT_TRUE(result.ambiguity->rejected.has_value());
-      EXPECT_GT(result.ambiguity->rejected->sigmas, 4);
+      EXPECT_GT(result.ambiguity->rejected->sigmas, 5);
       EXPECT_LT(error_deg(s, result.plane), 1);
       EXPECT_THAT(text_of_check(result, Level::weak), HasSubstr("sigma"));
       const double last_deg =

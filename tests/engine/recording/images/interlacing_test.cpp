@@ -17,7 +17,7 @@ namespace {
 using Eigen::Vector2d;
 
 const Vector2d kMotion_px(5, 1.5);  // from frame to frame
-constexpr int kFrames = 20;
+constexpr int kMadeFrames = 20;
 
 /// The texture at a time in frames, which moves by `motion_px` a frame.
 cv::Mat scene(double time, const Vector2d& motion_px = kMotion_px) {
@@ -31,7 +31,7 @@ enum class Scan { progressive, top_first, bottom_first };
 
 std::vector<cv::Mat> filmed(Scan scan, const Vector2d& motion_px = kMotion_px) {
   std::vector<cv::Mat> images;
-  for (int i = 0; i < kFrames; ++i) {
+  for (int i = 0; i < kMadeFrames; ++i) {
     cv::Mat& image = images.emplace_back(scene(i, motion_px));
     if (scan == Scan::progressive) continue;
     const cv::Mat later = scene(i + 0.5, motion_px);
@@ -66,7 +66,7 @@ TEST(Interlacing, FirstFieldsAreUsedWithoutADeclaration) {
     for (const char* name : {"a.avi", "a.mov"}) {
       const VideoFile video = open(folder.path() / name, filmed(scan));
       EXPECT_EQ(video.first_field, first) << name;
-      for (const int frame : {0, 7, kFrames - 1})
+      for (const int frame : {0, 7, kMadeFrames - 1})
         EXPECT_LT(error_of(video, frame), kMostError) << frame;
     }
 }
