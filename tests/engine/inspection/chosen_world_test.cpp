@@ -17,7 +17,7 @@ namespace {
 
 using Eigen::Vector2d, Eigen::Vector3d, testing::HasSubstr;
 
-const Camera kCamera{640, 480, 500, 500, 319.5, 239.5, Distortion::none, {}};
+const Camera kMeasuringCamera{640, 480, 500, 500, 319.5, 239.5, Distortion::none, {}};
 const Plane kFloor{Vector3d(0, -0.6, -0.8), 1};
 const Plane kWall{Vector3d(-0.8, 0, -0.6), 1.5};
 constexpr int kRoomStart = 10;
@@ -32,7 +32,7 @@ struct MeasuredRoom : testing::Test {
     auto tracks = std::make_shared<Tracks>();
     auto window = std::make_shared<Window>();
     auto result = std::make_shared<Initialization>();
-    recording->camera = kCamera;
+    recording->camera = kMeasuringCamera;
     recording->timestamps_ns = std::vector<std::int64_t>(20, 0);
     result->ok = true;
     result->plane = kFloor;
@@ -43,7 +43,7 @@ struct MeasuredRoom : testing::Test {
       for (int x = 10; x < 640; x += 20) pixels.emplace_back(x, y);
     const auto count = std::ssize(pixels);
     window->start = tracks->start = kRoomStart;
-    window->K = intrinsic_matrix(kCamera);
+    window->K = intrinsic_matrix(kMeasuringCamera);
     window->timestamps_ns = {0, 1};
     window->planes.resize(2);
     window->points_px.assign(2, Eigen::Matrix2Xd(2, count));
@@ -53,7 +53,7 @@ struct MeasuredRoom : testing::Test {
       const int k = pixels[j].x() < 320 ? 0 : 1;
       const Vector3d point = on_plane(pixels[j], k == 0 ? kFloor : kWall);
       window->points_px[0].col(j) = pixels[j];
-      window->points_px[1].col(j) = project(kCamera, to_camera(second, point));
+      window->points_px[1].col(j) = project(kMeasuringCamera, to_camera(second, point));
       window->planes[k].tracks.push_back(j);
       for (int i = 0; i < 2; ++i) window->planes[k].inlier[i][j] = true;
       tracks->ids.push_back(j);
@@ -93,8 +93,8 @@ TEST_F(MeasuredRoom, ScaleIsExactForPointsOnOneAndOnTwoPlanesInAnyFrame) {
   measure("100,400,500,300,10", text((a - c).norm()));
   EXPECT_NEAR(*known_scale(room_), kMetersPerUnit, 1e-9);
   const Pose& second = room_.initialization->cameras[1];
-  const Vector2d p = project(kCamera, to_camera(second, a));
-  const Vector2d q = project(kCamera, to_camera(second, c));
+  const Vector2d p = project(kMeasuringCamera, to_camera(second, a));
+  const Vector2d q = project(kMeasuringCamera, to_camera(second, c));
   measure(fmt::format("{},{},{},{},11", p.x(), p.y(), q.x(), q.y()), text((a - c).norm()));
   EXPECT_NEAR(*known_scale(room_), kMetersPerUnit, 1e-9);
   EXPECT_FALSE(room_.measured_scale->log_sigma) << "the result has no uncertainty";

@@ -17,7 +17,7 @@ using Eigen::Matrix2Xd, Eigen::Vector2d, Eigen::VectorXd;
 
 constexpr int kPeriod_px = 40;
 const cv::Size kImage(480, 360);
-const Camera kCamera{kImage.width, kImage.height, 400, 400, 240, 180, Distortion::none, {}};
+const Camera kTileCamera{kImage.width, kImage.height, 400, 400, 240, 180, Distortion::none, {}};
 
 /// How the marbling of tiles differs.
 enum class Marbling { one_for_all, own };
@@ -112,8 +112,10 @@ TEST(RepeatedFlow, FollowsThePredictionOverEqualTilesAndHasNoMargin) {
 /// Places of all tracks over frames that each move by `by`.
 Tracks tracked(Marbling marbling, const cv::Point& by, int frames) {
   const cv::Mat floor = tiles(marbling);
-  return *track_window(
-      [&](int i) { return moved(floor, i * by, i + 1); }, kCamera, {0, frames}, Tracking::anchored);
+  return *track_window([&](int i) { return moved(floor, i * by, i + 1); },
+                       kTileCamera,
+                       {0, frames},
+                       Tracking::anchored);
 }
 
 TEST(Repetition, DoesNotMakeTracksJump) {
@@ -152,7 +154,7 @@ TEST(Repetition, IsNotAmbiguousBesideADistinctMotion) {
 
 TEST(Repetition, KeepsTheLeastMarginOfFramesThatAreDropped) {
   const cv::Mat floor = tiles(Marbling::own);
-  WindowTracker tracker(kCamera, Tracking::anchored);
+  WindowTracker tracker(kTileCamera, Tracking::anchored);
   for (int i = 0; i < 6; ++i) tracker.add(moved(floor, i * cv::Point(6, 2), i + 1));
   const std::vector<double> all = tracker.tracks().repetition->margins;
   tracker.drop_every_second();
