@@ -16,7 +16,7 @@ using testing::HasSubstr;
 using testing::IsEmpty;
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kInfinite = std::numeric_limits<double>::infinity();
 
 Verdict good_numbers() {
   return {
@@ -51,7 +51,7 @@ TEST(Verdict, IsTheHeaviestFindingInTheOrderOfTheTable) {
 }
 
 TEST(Verdict, IsNeverReadyByNumbersThatAreNotFinite) {
-  for (const double bad : {kNaN, kInfinity}) {
+  for (const double bad : {kNaN, kInfinite}) {
     for (std::optional<double> Verdict::*field : {&Verdict::normal_sigma_deg,
                                                   &Verdict::rotation_rms_px,
                                                   &Verdict::noise_px,
@@ -177,9 +177,9 @@ TEST(RepeatedTexture, IsWeakInAmbiguousFrames) {
   Tracks tracks{.start = 7, .ids = {3, 5}, .raw_px = std::vector(4, Eigen::Matrix2Xd(2, 2))};
   const auto found = [&] { return findings_of({.tracks = &tracks}, {Of::window}); };
   EXPECT_THAT(found(), IsEmpty());
-  tracks.repetition = Repetition{Eigen::Matrix2Xd{{20, 0}, {0, 24}}, {kInfinity, 6, 6, 6}};
+  tracks.repetition = Repetition{Eigen::Matrix2Xd{{20, 0}, {0, 24}}, {kInfinite, 6, 6, 6}};
   EXPECT_THAT(found(), IsEmpty());
-  tracks.repetition->margins = {kInfinity, 6, 1, 0};
+  tracks.repetition->margins = {kInfinite, 6, 1, 0};
   ASSERT_EQ(found().size(), 1U);
   const Finding finding = found()[0];
   EXPECT_EQ(finding.key, "repeated-texture");

@@ -14,7 +14,7 @@ namespace {
 
 using testing::Contains, testing::Field, testing::HasSubstr;
 
-constexpr int kFrames = 5;
+constexpr int kFramesOfASet = 5;
 
 cv::Mat color_image(int number) { return {48, 64, CV_8UC3, cv::Scalar::all(10 * number)}; }
 cv::Mat depth_image() { return {48, 64, CV_16UC1, cv::Scalar::all(1200)}; }
@@ -38,14 +38,14 @@ std::string row_major(const Pose& pose, int rows) {
 
 std::string all_rows(int rows) {
   std::string text;
-  for (int i = 0; i < kFrames; ++i) text += row_major(true_pose(i), rows) + "\n";
+  for (int i = 0; i < kFramesOfASet; ++i) text += row_major(true_pose(i), rows) + "\n";
   return text;
 }
 
 void expect_true_poses(const Recording& recording, double tolerance = 1e-9) {
   ASSERT_TRUE(recording.truth);
-  ASSERT_EQ(recording.truth->poses.size(), static_cast<std::size_t>(kFrames));
-  for (int i = 0; i < kFrames; ++i) {
+  ASSERT_EQ(recording.truth->poses.size(), static_cast<std::size_t>(kFramesOfASet));
+  for (int i = 0; i < kFramesOfASet; ++i) {
     ASSERT_TRUE(recording.truth->poses[i]);
     EXPECT_TRUE(recording.truth->poses[i]->R_wc.isApprox(true_pose(i).R_wc, tolerance)) << i;
     EXPECT_TRUE(recording.truth->poses[i]->p_wc.isApprox(true_pose(i).p_wc, tolerance)) << i;
@@ -55,7 +55,7 @@ void expect_true_poses(const Recording& recording, double tolerance = 1e-9) {
 class DataSets : public RecordingFolder {
  protected:
   void write_images(const std::string& pattern, bool depth = false) const {
-    for (int i = 0; i < kFrames; ++i)
+    for (int i = 0; i < kFramesOfASet; ++i)
       folder.write(fmt::format(fmt::runtime(pattern), i), depth ? depth_image() : color_image(i));
   }
 };
@@ -68,7 +68,7 @@ TEST_F(DataSets, ReadsKittisTimesLensAndPoses) {
   folder.write("sequences/03/calib.txt", "P0: 60 0 31 0 0 61 23 0 0 0 1 0\n");
   folder.write("poses/03.txt", all_rows(3));
   const auto recording = open_recording(folder.path() / "sequences/03");
-  EXPECT_EQ(recording->frame_count(), kFrames);
+  EXPECT_EQ(recording->frame_count(), kFramesOfASet);
   EXPECT_EQ(recording->timestamps_ns[3], 300'000'000);
   EXPECT_EQ(recording->camera_source, CameraSource::file);
   EXPECT_EQ(recording->camera.fy, 61);
@@ -80,10 +80,10 @@ TEST_F(DataSets, ReadsKittisTimesLensAndPoses) {
 TEST_F(DataSets, ReadsTheColorImagesAndPosesOfSevenScenes) {
   write_images("frame-{:06d}.color.png");
   write_images("frame-{:06d}.depth.png", true);
-  for (int i = 0; i < kFrames; ++i)
+  for (int i = 0; i < kFramesOfASet; ++i)
     folder.write(fmt::format("frame-{:06d}.pose.txt", i), row_major(true_pose(i), 4));
   const auto recording = open();
-  EXPECT_EQ(recording->frame_count(), kFrames);
+  EXPECT_EQ(recording->frame_count(), kFramesOfASet);
   EXPECT_EQ(recording->images->bgr(2).at<cv::Vec3b>(0, 0)[0], 20);
   expect_true_poses(*recording);
   EXPECT_THAT(recording->files,
@@ -98,15 +98,16 @@ const std::string kNoPoses[] = {"nan nan nan nan nan nan nan nan nan nan nan nan
 TEST_F(DataSets, ReadsSevenScenesWithAFrameThatWasNotTracked) {
   write_images("frame-{:06d}.color.png");
   for (const std::string& lost : kNoPoses) {
-    for (int i = 0; i < kFrames; ++i)
+    for (int i = 0; i < kFramesOfASet; ++i)
       folder.write(fmt::format("frame-{:06d}.pose.txt", i),
                    i == 3 ? lost : row_major(true_pose(i), 4));
     const auto recording = open();
     ASSERT_TRUE(recording->truth) << lost;
-    for (int i = 0; i < kFrames; ++i) EXPECT_EQ(recording->truth->poses[i].has_value(), i != 3);
+    for (int i = 0; i < kFramesOfASet; ++i)
+      EXPECT_EQ(recording->truth->poses[i].has_value(), i != 3);
     EXPECT_THAT(recording->notes, Contains("1 of 5 images have no pose in the ground truth"));
   }
-  for (int i = 0; i < kFrames; ++i)
+  for (int i = 0; i < kFramesOfASet; ++i)
     folder.write(fmt::format("frame-{:06d}.pose.txt", i), kNoPoses[0]);
   EXPECT_FALSE(open()->truth);
   EXPECT_THAT(open()->notes,
@@ -118,7 +119,7 @@ TEST_F(DataSets, ReadsReplicaWithARowThatIsNoPose) {
   write_images("results/frame{:06d}.jpg");
   for (const std::string& lost : kNoPoses) {
     std::string rows = lost + "\n";
-    for (int i = 1; i < kFrames; ++i) rows += row_major(true_pose(i), 4) + "\n";
+    for (int i = 1; i < kFramesOfASet; ++i) rows += row_major(true_pose(i), 4) + "\n";
     folder.write("traj.txt", rows);
     const auto recording = open();
     ASSERT_TRUE(recording->truth) << lost;
@@ -137,7 +138,7 @@ TEST_F(DataSets, ReadsReplicasScene) {
   folder.write("cam_params.json",
                R"({"camera": {"w": 64, "h": 48, "fx": 60, "fy": 61, "cx": 31, "cy": 23}})");
   const auto recording = open_recording(folder.path() / "room");
-  EXPECT_EQ(recording->frame_count(), kFrames);
+  EXPECT_EQ(recording->frame_count(), kFramesOfASet);
   EXPECT_EQ(recording->camera.fx, 60);
   expect_true_poses(*recording);
 }
@@ -146,7 +147,7 @@ TEST_F(DataSets, ReadsAColmapProject) {
   write_images("images/frame_{:05d}.jpg");
   folder.write("sparse/0/cameras.txt", "1 PINHOLE 64 48 60 61 31.5 23.5\n");
   std::string images;
-  for (int i = kFrames - 1; i >= 0; --i) {
+  for (int i = kFramesOfASet - 1; i >= 0; --i) {
     const Pose T_cw = inverse(true_pose(i));
     const Eigen::Quaterniond q(T_cw.R_wc);
     images += fmt::format("{} {} {} {} {} {} 1 frame_{:05d}.jpg\n\n",
@@ -167,7 +168,7 @@ TEST_F(DataSets, ReadsAColmapProject) {
 TEST_F(DataSets, ReadsNerfstudiosPoses) {
   write_images("images/frame_{:05d}.png");
   std::string frames;
-  for (int i = 0; i < kFrames; ++i) {
+  for (int i = 0; i < kFramesOfASet; ++i) {
     Pose gl = true_pose(i);
     gl.R_wc = gl.R_wc * Eigen::Vector3d(1, -1, -1).asDiagonal();
     std::string rows = row_major(gl, 4);
@@ -195,7 +196,7 @@ TEST_F(DataSets, ReadsNerfstudiosPoses) {
 /// Files of a phone, whose frames are 0.1 s apart. Poses have x right, y up and z backward.
 struct PhoneLog {
   explicit PhoneLog(double first_s, const char* lens, const char* force) {
-    for (int i = 0; i < kFrames; ++i) {
+    for (int i = 0; i < kFramesOfASet; ++i) {
       const double time_s = first_s + 0.1 * i;
       images.push_back(color_image(i));
       frames += fmt::format("{:.3f},{}{}\n", time_s, i, lens);
@@ -261,7 +262,7 @@ TEST_F(DataSets, ReadsAdviosPosesAndSensorsInThePhonesAxes) {
 TEST_F(DataSets, GuessesTheLensOfTumWithoutACalibration) {
   write_images("rgb/{}.png");
   std::string list;
-  for (int i = 0; i < kFrames; ++i) list += fmt::format("{}.5 rgb/{}.png\n", 1000 + i, i);
+  for (int i = 0; i < kFramesOfASet; ++i) list += fmt::format("{}.5 rgb/{}.png\n", 1000 + i, i);
   folder.write("rgb.txt", list);
   const auto recording = open();
   EXPECT_EQ(recording->layout, "TUM RGB-D");
@@ -296,7 +297,7 @@ TEST_F(DataSets, NeverReadDepthAsAnImage) {
   write_images("left{:06d}.png");
   write_images("right{:06d}.png");
   const auto recording = open();
-  EXPECT_EQ(recording->frame_count(), kFrames);
+  EXPECT_EQ(recording->frame_count(), kFramesOfASet);
   EXPECT_THAT(recording->image_files.front().string(), HasSubstr("left000000.png"));
 }
 
