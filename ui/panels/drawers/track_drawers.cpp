@@ -59,6 +59,7 @@ void draw_frame(const PanelContext& ui, const TrackLife& life, const TrackFrame&
   const SignStyle look =
       track_style(inspection, frame.frame - inspection.window->start, life.column);
   sign_at_cursor(look.sign, look.rgb);
+  ImGui::Dummy({ImGui::GetTextLineHeight(), 0});  // the column is as wide as the sign
 }
 
 void draw_life(const PanelContext& ui, const TrackLife& life, const ImVec2& size) {
@@ -217,6 +218,7 @@ void draw_track(const PanelContext& ui, const std::vector<TrackRow>& rows, std::
   const double unit = known_scale(*ui.inspection()).value_or(1);
   const auto depth = row.depth ? std::optional(unit * *row.depth) : std::nullopt;
   text_cells({two_decimals(row.rms_px), two_decimals(depth), row.verdict});
+  if (ImGui::GetItemRectSize().x > ImGui::GetContentRegionAvail().x) tooltip(row.verdict);
 }
 
 /// Buttons that copy the list, or its selected rows.

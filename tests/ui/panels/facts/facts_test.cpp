@@ -146,7 +146,7 @@ TEST(Results, ShowNoSigmaAsAnAnswerUnlessThereIsOne) {
 
 TEST(Texts, ShowDashesForWhatIsNotANumber) {
   const double nan = std::nan("");
-  for (const double unknown : {nan, -nan, INFINITY}) {
+  for (const double unknown : {nan, -nan, HUGE_VAL}) {
     EXPECT_EQ(number_text(unknown, 3), "\u2013");
     EXPECT_EQ(angle_text(unknown), "\u2013\u00b0");
     EXPECT_EQ(two_decimals(unknown), "\u2013");

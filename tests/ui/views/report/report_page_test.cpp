@@ -129,7 +129,8 @@ TEST(ReportPage, ShowsNoSigmaOfAFailedInitialization) {
   result->verdict = Verdict{.normal_sigma_deg = 0.3125};
   inspection->initialization = result;
   section.inspection = inspection;
-  EXPECT_THAT(report_page({.sections = {section}, .program = "1"}), Not(HasSubstr("0.312")));
+  const std::string page = report_page({.sections = {section}, .program = "1"});
+  EXPECT_EQ(page.find("normal of the plane"), std::string::npos);
 }
 
 TEST(ReportPage, NamesAnUncertaintyThatIsNotTheMethodsOwn) {
