@@ -36,7 +36,7 @@ std::string undetermined_intrinsics(const LensEstimate& estimate) {
 }
 
 // The reprojection error of the recordings with boards at hand is at most 0.33 px, 0.07 % of the
-// width. Those of lenses that ended far from the truth were 148 and 171 px; a board with wrong
+// width. Lenses that ended far from the truth had 148 and 171 px; a board with wrong
 // counts or the wrong lens is between.
 constexpr double kMostRms_px = 2, kMostRms = 0.003;  // the second: share of the larger side
 
@@ -62,7 +62,7 @@ std::string why_wrong_model(const LensFit& fit, cv::Size size) {
       fit.rms_px);
 }
 
-/// What else to try than this model.
+/// Returns the advice to try other models.
 std::string other_models(const CalibrationOptions& options) {
   constexpr const char* kBoard = "check that the board is flat and its measures are right";
   if (options.distortion == Distortion::equidistant)

@@ -9,11 +9,11 @@
 
 namespace gpo {
 
-/// What the residuals of different views have in common in one part of the image. Noise differs
+/// The part of the residuals that different views share in one part of the image. Noise differs
 /// from view to view, the error of a wrong lens model does not.
 struct ResidualStructure {
-  double rms_px = 0;        ///< of the common part; 0 if there is none
-  double share = 0;         ///< of the mean square of all residuals
+  double rms_px = 0;        ///< root mean square of that part; 0 if there is none
+  double share = 0;         ///< its share of the mean square of all residuals
   double significance = 0;  ///< standard deviations of the same from independent views
 };
 

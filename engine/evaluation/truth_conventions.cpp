@@ -21,7 +21,7 @@ using Eigen::Vector3d;
 
 constexpr const char* kLeftHanded = " (left-handed)";
 
-/// What the four numbers of a file's quaternions are if they are not what they were read as.
+/// Order of the four numbers of a file's quaternions, if they were read in another one.
 enum class Quaternion { as_read, w_first, w_last };
 
 /// A way to read a ground truth: R_wc = (R_w_measured by quaternion and inversion)
@@ -30,7 +30,7 @@ struct Convention {
   Quaternion quaternion = Quaternion::as_read;
   bool inverted = false;
   Matrix3d R_read_camera = Matrix3d::Identity();
-  std::string axes = {};  ///< of R_read_camera, for people; empty: the identity
+  std::string axes = {};  ///< describes R_read_camera, for people; empty: the identity
 };
 
 Matrix3d read_again(const Matrix3d& R, const Convention& convention) {
@@ -147,7 +147,7 @@ std::string advice_for(const Convention& convention, const WindowTruth& truth) {
 
 /// Relative rotations of the frames that have a truth.
 struct RelativeRotations {
-  std::vector<Matrix3d> R_w_measured;  ///< of the truth
+  std::vector<Matrix3d> R_w_measured;  ///< rotations of the truth
   Matrix3d R_measured_camera;
   Eigen::Matrix3Xd images_rad;  ///< rotation vectors relative to the reference frame
 

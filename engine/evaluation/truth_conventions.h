@@ -17,7 +17,7 @@ struct TruthConvention {
   double as_read_deg = 0;  ///< RMS difference of the rotations over the window
   double fitted_deg = 0;   ///< the same by the convention that fits
   std::string name;        ///< completes "they fit if ..."
-  std::string advice;      ///< what to change in the file, one sentence
+  std::string advice;      ///< a change of the file, one sentence
   bool is_used = false;    ///< the window's rotations are those of the truth
 };
 

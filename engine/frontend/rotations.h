@@ -28,7 +28,7 @@ struct Rotations {
   std::string note = "";  ///< how an ambiguity was resolved, if any
   /// Rotations by images alone that calibrated a gyroscope, one per frame; empty for other sources.
   std::vector<Eigen::Matrix3d> R_wc_images = {};
-  /// Those of the other one of two plane orientations that fit equally well; empty if one is clear.
+  /// Rotations by the other one of two equally good plane orientations; empty if one is clear.
   std::vector<Eigen::Matrix3d> R_wc_other = {};
   double orientations_apart_deg = 0;  ///< angle between the planes of `R_wc` and `R_wc_other`
 };

@@ -288,8 +288,8 @@ struct Inspector::Stages {
       inspection.imported->meters_per_unit.reset();
   }
 
-  /// Compares the truth with rotations by images. Those of the gyroscope alone are no evidence:
-  /// they may be wrong themselves.
+  /// Compares the truth with rotations by images. Rotations by the gyroscope alone
+  /// are no evidence: they may be wrong themselves.
   std::optional<TruthConvention> convention_of_truth(const Request& request) const {
     const RotationSource used = rotations.value.chosen.source;
     const bool by_truth = used == RotationSource::truth;

@@ -33,8 +33,8 @@ RefusedSolution solution_of(const Initialization& result) { return {result.plane
 
 /// The squared residuals of an inlier of the main plane.
 struct PlaneResiduals {
-  double squares = 0;                  // of the distances from transferred positions
-  Matrix2d normal = Matrix2d::Zero();  // of the error of the position in the reference
+  double squares = 0;                  // sum over distances from transferred positions
+  Matrix2d normal = Matrix2d::Zero();  // for the error of the position in the reference
   Eigen::Vector2d gradient = Eigen::Vector2d::Zero();  // frame, which all frames share
   int count = 0;
 

@@ -49,8 +49,8 @@ struct Repetition {
   std::vector<double> margins = {};
 };
 
-/// Least margin of a motion that the images distinguish from others. Of windows that were tracked
-/// right, over tiles, bricks, dots and chessboards of 17 to 75 px, the median is at least 5; of
+/// Least margin of a motion that the images distinguish from others. In windows that were tracked
+/// right, over tiles, bricks, dots and chessboards of 17 to 75 px, the median is at least 5; in
 /// those that were wrong by periods, over exact lattices, at most 0.9 but for single frames.
 inline constexpr double kDistinctMotion = 4;
 

@@ -22,7 +22,7 @@ using Eigen::VectorXd;
 constexpr int kHalfCompared = 8;       // half the side of a template [px of its level]
 constexpr int kReferenceTracks = 24;   // compared in the reference image
 constexpr int kStepTracks = 32;        // compared from image to image
-constexpr double kLeastContrast = 64;  // of a template, one gray level
+constexpr double kLeastContrast = 64;  // least contrast of a template, one gray level
 constexpr int kHalvings = 2;           // from the reference image's level to the coarsest
 // Least correlation of the median track with a second place. It is 0.55 to 0.68 on random texture
 // and in rooms, 0.80 to 0.99 on tiles of 26 to 75 px, bricks, dots and chessboards.
@@ -177,7 +177,7 @@ PlaceMotions refined_from(const Crossing& crossing,
 /// A motion of all tracks, as a difference from the predicted ones.
 struct CommonMotion {
   Vector2d px;
-  VectorXd correlations;  ///< of each compared track
+  VectorXd correlations;  ///< one for each compared track
   double typical;         ///< their median
 };
 

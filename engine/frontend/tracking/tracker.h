@@ -69,7 +69,7 @@ struct Anchors {
   Eigen::Matrix2Xd corners_px;         ///< 2 x tracks, from the templates' middles
   std::vector<Neighborhood> neighborhoods;
   std::vector<Warp> warps;
-  Eigen::VectorXd periods_px;  ///< of each template; empty if the texture does not repeat
+  Eigen::VectorXd periods_px;  ///< one for each template; empty if the texture does not repeat
 };
 
 /// Makes the templates. `image` is the smoothed reference image; `raw_px`, 2 x

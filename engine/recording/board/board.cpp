@@ -109,8 +109,8 @@ std::optional<BentGrid> fit_grid(const std::vector<cv::Point2f>& found,
   return result;
 }
 
-/// Moves corners that contradict the others to where these predict them: some are far off. Of
-/// `kBends` the one with the least median distance predicts them; more than half are right.
+/// Moves corners that contradict the others to where these predict them: some are far off.
+/// The element of `kBends` with the least median distance predicts them; more than half are right.
 void mend(std::vector<cv::Point2f>& corners, const Board& board, cv::Size size, double spacing) {
   const double most_px = kMostAstray * spacing;
   std::optional<BentGrid> best;

@@ -49,7 +49,7 @@ std::vector<double> field_motions(const cv::Mat& frame, const cv::Mat& next) {
   std::vector<double> motions;
   for (std::size_t i = 0; i < points.size(); ++i) {
     if (found[i] == 0 || found_next[i] == 0) continue;
-    // What does not move is half a row of a field higher in the odd rows.
+    // A place that does not move is half a row of a field higher in the odd rows.
     const cv::Point2d moved = in_next[i] - points[i],
                       between = in_odd[i] - points[i] + cv::Point2f(0, 0.5F);
     const cv::Point2d moved_px(moved.x, 2 * moved.y), between_px(between.x, 2 * between.y);

@@ -99,7 +99,7 @@ TEST(Evaluation, ShowsAWrongLengthOfThePathThatTheAlignmentHides) {
   const double rms = std::sqrt(squares / static_cast<double>(s.cameras.size()));
   EXPECT_NEAR(*e.path_error_m, kMetersPerUnit * rms, 1e-9);
   EXPECT_NEAR(*e.path_error_percent, 100 * rms / length, 1e-6);
-  Initialization other_unit = exact(s);  // as imported results have
+  Initialization other_unit = exact(s);  // imported results have such units
   for (Pose& camera : other_unit.cameras) camera.p_wc *= 3;
   for (MapPoint& point : other_unit.points) point.position *= 3;
   other_unit.plane.distance *= 3;

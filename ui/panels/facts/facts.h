@@ -60,7 +60,7 @@ struct FindingRow {
   Finding finding;
   std::string word = {};  ///< its level, or "ignored"
   Role color = Role::text;
-  std::string title = {};  ///< of its check
+  std::string title = {};  ///< title of its check
   bool may_be_ignored = false;
 };
 /// Returns the findings (null: none yet), the heaviest first.

@@ -49,7 +49,7 @@ VideoFile open(const std::filesystem::path& file,
   return open_video(file, camera, 1 << 24);
 }
 
-/// What coding costs; rows of the other field would differ by more than 20.
+/// Largest error of coding; rows of the other field would differ by more than 20.
 constexpr double kMostError = 8;
 
 /// RMS difference of the images to what the scene is at the frames' times.
@@ -130,7 +130,7 @@ TEST(Interlacing, FirstFieldKeepsItsRowsAndInterpolatesTheOthersInPlace) {
     EXPECT_EQ(cv::norm(image.rowRange(4, 8), ramp.rowRange(4, 8), cv::NORM_INF), 0) << first;
     for (int y = first; y < ramp.rows; y += 2)
       EXPECT_EQ(cv::norm(image.row(y), ramp.row(y), cv::NORM_INF), 0) << y;
-    // Of the other field nothing remains.
+    // The other field is gone.
     EXPECT_LE(image.at<cv::Vec3b>(1 - first, 0)[0], 25) << first;
   }
 }
