@@ -8,7 +8,7 @@
 namespace gpo {
 namespace {
 
-using test::refusal, testing::ElementsAre, testing::HasSubstr;
+using test::refusal, test::run_lines, testing::ElementsAre, testing::HasSubstr;
 
 const Finding kDoubt{.key = "implausible-intrinsics",
                      .level = Level::weak,
