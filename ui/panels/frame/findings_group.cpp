@@ -72,6 +72,7 @@ void findings_group(const PanelContext& ui, float left, float right) {
   std::string hovered;
   if (!rows.empty()) heading("FINDINGS");
   ImGui::PushFont(font(Font::small));
+  ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, {8 * ui.scale, ui.scale});
   const float indent = std::round(18 * ui.scale);
   for (std::size_t i = 0; i < rows.size(); ++i) {
     const FindingRow& row = rows[i];
@@ -82,8 +83,10 @@ void findings_group(const PanelContext& ui, float left, float right) {
     if (ImGui::IsItemClicked()) push(ui.commands, RunAction{"finding " + row.finding.key});
     tooltip(row.title + ". Click to select its tracks, go to its frame and open its view");
     draw_buttons(ui, row, left + indent, right);
+    ImGui::Dummy({1, 2 * ui.scale});
     ImGui::PopID();
   }
+  ImGui::PopStyleVar();
   ImGui::PopFont();
   if (hovered != ui.state.hover.finding) push(ui.commands, HoverOver{{.finding = hovered}});
 }

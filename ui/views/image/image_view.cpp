@@ -238,6 +238,10 @@ LegendRows legend_rows(const Canvas& canvas) {
   if (options.show.tracks)
     rows = options.colors ? legend_rows(*options.colors) : track_rows(canvas);
   for (LegendRow& row : rows) row.toggle = "tracks";
+  if (doubts_principal_point(inspection))  // first: a narrow image cuts off the last ones
+    rows.insert(rows.begin(),
+                {{Sign::cross, color_of(Role::warning), "principal point"},
+                 {Sign::disc, color_of(Role::text), "image center"}});
   for (const auto& [kind, text] : {std::pair{MaskKind::leave_out, "mask: tracks left out"},
                                    {MaskKind::plane, "mask: plane 1 only here"}})
     if (canvas.frame == 0 && inspection.settings.mask.has(kind))
@@ -253,10 +257,6 @@ LegendRows legend_rows(const Canvas& canvas) {
         fmt::format("residuals × {:g}", kResidualMagnification),
         "residuals");
   if (ok && !options.show.residuals) hidden("residuals", "residuals");
-  if (doubts_principal_point(inspection)) {
-    add(Sign::cross, Role::warning, "principal point of the calibration");
-    add(Sign::disc, Role::text, "image center");
-  }
   if (!horizon(canvas).empty()) add(Sign::line, Role::gravity, "horizon", "gravity");
   if (!options.show.cube && inspection.cube) hidden("cube", "cube");
   if (!options.show.cube) return rows;
