@@ -26,6 +26,7 @@ Inspection with_wall(Inspection inspection) {
   for (auto& inlier : window->inlier)
     for (const int j : window->planes[1].tracks) inlier[j] = false;
   window->planes[0].inlier = window->inlier;
+  for (WindowPlane& plane : window->planes) plane.H_i1 = window->H_i1;
   auto result = std::make_shared<Initialization>(*inspection.initialization);
   result->planes.resize(2);
   result->planes[0].plane = result->plane;

@@ -144,7 +144,7 @@ TEST(Results, ShowNoSigmaAsAnAnswerUnlessThereIsOne) {
   }
 }
 
-TEST(Texts, ShowDashesForWhatIsNotANumber) {
+TEST(NumberTexts, ShowDashesForWhatIsNotANumber) {
   const double nan = std::nan("");
   for (const double unknown : {nan, -nan, HUGE_VAL}) {
     EXPECT_EQ(number_text(unknown, 3), "\u2013");

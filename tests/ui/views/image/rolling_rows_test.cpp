@@ -68,6 +68,12 @@ TEST(RollingRows, TransferErrorsAreThoseThatSelectedTheInliers) {
   const Inspection still = made_inspection();
   Inspection rolling = still;
   roll(rolling, 6e-5);
+  auto window = std::make_shared<Window>(*still.window);
+  for (int i = 0; i < window->frame_count(); ++i)
+    for (int j = 0; j < window->track_count(); ++j)
+      window->points_px[i].col(j) =
+          undistort(rolling.recording->camera, rolling.tracks->raw_px[i].col(j));
+  rolling.window = window;
   double most_px = 0;
   for (const bool known : {false, true}) {
     if (known) rolling.selection = still.window;
