@@ -220,8 +220,11 @@ LegendRows track_rows(const Canvas& canvas) {
   rows.push_back({Sign::cross, color_of(Role::outlier), counted(outliers, "outlier")});
   if (fixed > 0)
     rows.push_back({Sign::square, color_of(Role::text_dim), fmt::format("{} do not move", fixed)});
-  if (const int lost = lost_count(window, canvas.frame); lost > 0)
-    rows.push_back({Sign::diamond, color_of(Role::lost), fmt::format("{} lost", lost)});
+  // In all frames if in the last one, so that the legend keeps its place.
+  if (lost_count(window, window.frame_count() - 1) > 0)
+    rows.push_back({Sign::diamond,
+                    color_of(Role::lost),
+                    fmt::format("{} lost", lost_count(window, canvas.frame))});
   if (excluded > 0)
     rows.push_back({Sign::dot, color_of(Role::text_dim), fmt::format("{} excluded", excluded)});
   return rows;
