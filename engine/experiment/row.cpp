@@ -147,6 +147,7 @@ Row make_row(const Inspection& inspection) {
   row.status = result.ok ? "ok" : "failed";
   row.tracks = inspection.window->track_count();
   row.inliers = inspection.window->inlier_count(0);
+  row.lost = lost_count(*inspection.window, inspection.window->frame_count() - 1);
   if (result.ok) row.rms_px = result.rms_px;
   row.iterations = result.solver.iterations;
   row.unknowns = result.solver.unknowns;

@@ -15,7 +15,7 @@ struct Row {
   Settings settings;          ///< with resolved defaults
   std::string status;         ///< ok | failed
   std::string reason;         ///< why it failed
-  std::optional<int> tracks, inliers;
+  std::optional<int> tracks, inliers, lost;
   std::optional<double> rms_px;
   std::optional<int> iterations, unknowns, residuals;
   std::optional<double> initial_cost, final_cost;  ///< half the sum of squares [px^2]
@@ -63,6 +63,7 @@ void visit_row(R& row, Visitor&& visit) {
   visit("reason", row.reason);
   visit("tracks", row.tracks);
   visit("inlier_tracks", row.inliers);
+  visit("lost", row.lost);
   visit("rms_px", row.rms_px);
   visit("iterations", row.iterations);
   visit("unknowns", row.unknowns);

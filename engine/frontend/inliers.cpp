@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/frontend/inliers.h"
 
-#include "engine/frontend/static_tracks.h"
 #include "engine/geometry/homography.h"
 #include "engine/geometry/statistics.h"
 

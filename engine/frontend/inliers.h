@@ -33,6 +33,15 @@ inline constexpr double kUsualThreshold = 2;
 /// 2 x tracks, NaN: not seen. Returns 0 if there are fewer than four frames or eight tracks.
 double track_noise_px(const std::vector<Eigen::Matrix2Xd>& points_px);
 
+/// Returns the tracks that do not move in the image although the homographies of the moving tracks
+/// predict it, ascending: an overlay, a part of the camera's carrier, dirt on the lens, or a camera
+/// at rest before a moving object. A track near the focus of expansion is not among them. Empty if
+/// all tracks rest. `points_px` is one per frame, 2 x tracks, undistorted, NaN: not seen;
+/// `sigma_px` as `Tracks::sigma_px`; `unit_px` is the `pixel_unit`.
+std::vector<int> static_tracks(const std::vector<Eigen::Matrix2Xd>& points_px,
+                               const std::vector<Eigen::VectorXd>& sigma_px,
+                               double unit_px);
+
 /// Returns the default of `RansacOptions::threshold_px`: 2 `pixel_unit`, or 4.2 standard deviations
 /// of the tracks' noise if that is more, up to 8 `pixel_unit`.
 double usual_threshold_px(const Camera& camera, const std::vector<Eigen::Matrix2Xd>& points_px);

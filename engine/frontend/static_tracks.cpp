@@ -1,7 +1,5 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/frontend/static_tracks.h"
-
 #include "engine/frontend/inliers.h"
 #include "engine/geometry/homography.h"
 #include "engine/geometry/statistics.h"

@@ -4,7 +4,6 @@
 
 #include "engine/base/error.h"
 #include "engine/geometry/statistics.h"
-#include "engine/inspection/studies/studies.h"
 #include "engine/pipeline/method_defaults.h"
 #include "engine/pipeline/pipeline.h"
 #include "engine/recording/companions/companion_files.h"

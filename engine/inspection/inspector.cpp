@@ -226,6 +226,22 @@ struct Inspector::Stages {
     });
   }
 
+  /// The numbers of the window as it grows; unchanged without rotations.
+  bool update_growth(const Window& window,
+                     const Rotations& given,
+                     const InitializeOptions& options,
+                     const std::stop_token& stop) {
+    if (given.R_wc.empty()) return true;
+    Settings acting = *rotations.key;
+    acting.options.lens = options.lens;
+    if (window.R_wc == given.R_wc_other)
+      acting.options.rotations = RotationSource::averaging_second;
+    return growth.update(acting, [&] {
+      auto numbers = growing_numbers(window, options.lens, stop);
+      return stop.stop_requested() ? std::nullopt : std::optional(std::move(numbers));
+    });
+  }
+
   void initialize(const Request& request, Inspection& inspection) {
     const auto& [settings, stop, progress] = request;
     const Rotations& given = rotations.value.chosen.rotations;
@@ -245,21 +261,9 @@ struct Inspector::Stages {
     inspection.timing = timing(settings, milliseconds_since(begin), found.solver.milliseconds);
     if (imports) inspection.imported = imported;
     add_own_noise(window, sources, options, stop, found);
-    std::vector<Verdict> numbers;
-    if (!given.R_wc.empty()) {
-      Settings acting = *rotations.key;
-      acting.options.lens = options.lens;
-      if (window.R_wc == given.R_wc_other)
-        acting.options.rotations = RotationSource::averaging_second;
-      const bool grown = growth.update(acting, [&] {
-        auto found_numbers = growing_numbers(window, options.lens, request.stop);
-        return request.stop.stop_requested() ? std::nullopt
-                                             : std::optional(std::move(found_numbers));
-      });
-      if (!grown) return;
-      numbers = growth.value;
-      inspection.motion = frame_motion(window);
-    }
+    if (!update_growth(window, given, options, stop)) return;
+    std::vector<Verdict> numbers = given.R_wc.empty() ? std::vector<Verdict>() : growth.value;
+    if (!given.R_wc.empty()) inspection.motion = frame_motion(window);
     const std::vector<Remark> remarks = remarks_on_window(settings, window);
     if (truth.value) inspection.truth_convention = convention_of_truth(request);
     Evidence known = evidence(remarks);
@@ -398,6 +402,46 @@ std::unique_ptr<Inspector::Stages> Inspector::new_stages(double intrinsics_scale
   return stages;
 }
 
+namespace {
+
+/// Compares the result with the ground truth. Returns whether that describes the leading plane.
+bool add_evaluation(Inspection& inspection) {
+  const InitializeOptions& options = inspection.settings.options;
+  Evaluation& e = inspection.evaluation.emplace(evaluate(*inspection.initialization,
+                                                         *inspection.window,
+                                                         *inspection.truth,
+                                                         options.seed,
+                                                         options.lens));
+  const bool of_main_plane = e.plane == inspection.window->leader && !inspection.truth_convention;
+  if (inspection.truth_convention)
+    e = {.alignment = e.alignment, .plane = inspection.window->leader};
+  else if (inspection.inertial)
+    compare(*inspection.inertial, *inspection.truth, e);
+  if (const auto scale = known_scale(inspection); scale && e.scale)
+    e.scale_error_percent = 100 * (*scale / *e.scale - 1);
+  return of_main_plane;
+}
+
+/// Places the cube on the estimated plane and, if the truth describes it, on the true one.
+void place_main_cubes(const std::vector<Eigen::Vector2d>& board,
+                      bool main_plane_is_true,
+                      Inspection& inspection) {
+  const auto place = [&](const Plane& plane, const Pose& reference, const RollingCamera& camera) {
+    return place_cube(plane,
+                      reference,
+                      *inspection.recording,
+                      *inspection.window,
+                      at_time_stamp(board, plane, reference, camera));
+  };
+  inspection.cube = place(inspection.initialization->plane, Pose{}, rolling_camera(inspection, 0));
+  const WindowTruth* truth = inspection.truth.get();
+  if (main_plane_is_true && truth != nullptr && truth->plane && truth->cameras.front())
+    inspection.true_cube =
+        place(*truth->plane, *truth->cameras.front(), true_rolling_camera(inspection, 0));
+}
+
+}  // namespace
+
 std::shared_ptr<const Inspection> Inspector::inspect(const Settings& settings,
                                                      const std::stop_token& stop,
                                                      const Progress& progress) {
@@ -424,37 +468,12 @@ std::shared_ptr<const Inspection> Inspector::inspect(const Settings& settings,
     inspection.measured_scale = measure_scale(inspection);
     inspection.chosen_world = choose_world(inspection);
     inspection.other_cubes = place_other_cubes(inspection);
-    bool main_plane_is_true = true;
-    if (inspection.truth) {
-      Evaluation& e = inspection.evaluation.emplace(evaluate(*inspection.initialization,
-                                                             *inspection.window,
-                                                             *inspection.truth,
-                                                             settings.options.seed,
-                                                             settings.options.lens));
-      main_plane_is_true = e.plane == inspection.window->leader && !inspection.truth_convention;
-      if (inspection.truth_convention)
-        e = {.alignment = e.alignment, .plane = inspection.window->leader};
-      else if (inspection.inertial)
-        compare(*inspection.inertial, *inspection.truth, e);
-      if (const auto scale = known_scale(inspection); scale && e.scale)
-        e.scale_error_percent = 100 * (*scale / *e.scale - 1);
-    }
-    // The board is on that plane, too.
-    const auto board =
-        main_plane_is_true ? stages.board_corners.value : std::vector<Eigen::Vector2d>{};
-    const auto place = [&](const Plane& plane, const Pose& reference, const RollingCamera& camera) {
-      return place_cube(plane,
-                        reference,
-                        *inspection.recording,
-                        *inspection.window,
-                        at_time_stamp(board, plane, reference, camera));
-    };
-    inspection.cube =
-        place(inspection.initialization->plane, Pose{}, rolling_camera(inspection, 0));
-    const WindowTruth* truth = inspection.truth.get();
-    if (main_plane_is_true && truth != nullptr && truth->plane && truth->cameras.front())
-      inspection.true_cube =
-          place(*truth->plane, *truth->cameras.front(), true_rolling_camera(inspection, 0));
+    const bool main_plane_is_true = !inspection.truth || add_evaluation(inspection);
+    // The board is on the true plane, too.
+    place_main_cubes(
+        main_plane_is_true ? stages.board_corners.value : std::vector<Eigen::Vector2d>{},
+        main_plane_is_true,
+        inspection);
   }
   add_findings(inspection);
   return std::make_shared<const Inspection>(std::move(inspection));

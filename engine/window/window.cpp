@@ -109,6 +109,18 @@ double homography_error_px(const Window& window) {
   return median(std::move(errors));
 }
 
+bool is_lost(const Window& window, int frame, int track) {
+  const auto seen = [&](int i) { return window.points_px[i].col(track).allFinite(); };
+  return seen(0) && !seen(frame);
+}
+
+int lost_count(const Window& window, int frame) {
+  int lost = 0;
+  for (int track = 0; track < window.track_count(); ++track)
+    lost += is_lost(window, frame, track) ? 1 : 0;
+  return lost;
+}
+
 Eigen::Vector2d image_size_px(const Window& window) {
   if (window.width > 0 && window.height > 0) return Eigen::Vector2d(window.width, window.height);
   const Eigen::Vector2d center = window.K.topRightCorner<2, 1>();

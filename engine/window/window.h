@@ -87,7 +87,7 @@ struct Window {
   std::vector<Eigen::VectorXd> rows = {};
   int image_rows = 0;  ///< number of rows of the recorded image, or columns if read; 0: unknown
   /// Columns of tracks that do not move in the image although the others predict it, ascending.
-  /// They are left out: their points are NaN (`static_tracks`, engine/frontend/static_tracks.h).
+  /// They are left out: their points are NaN (`static_tracks`, engine/frontend/inliers.h).
   std::vector<int> static_tracks = {};
   std::vector<std::vector<bool>> inlier;  ///< one per frame and track: observed, agrees with H_i1
   std::vector<Eigen::Matrix3d> H_i1;      ///< p_i ~ H_i1 p_1 by RANSAC [px]; H_11 = I
@@ -155,6 +155,11 @@ double pixel_unit(const Window& window);
 /// image width, and radial distortion that moves the corners by 0.5 `pixel_unit` (third and fifth
 /// power of the radius). A guess is taken as 20 %, 2 %, and 3 % of the corner's distance off.
 std::vector<std::vector<Eigen::Matrix2Xd>> typical_lens_moves_px(const Window& window);
+
+/// Returns whether a track that starts in the reference frame has no observation in a frame of the
+/// window. Excluded tracks have none at all and are not lost.
+bool is_lost(const Window& window, int frame, int track);
+int lost_count(const Window& window, int frame);
 
 /// Returns the errors of a frame; zero for the reference frame and for frames without inliers.
 FrameErrors frame_errors(const Window& window, int frame);

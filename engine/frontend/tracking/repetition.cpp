@@ -27,14 +27,18 @@ constexpr int kHalvings = 2;           // from the reference image's level to th
 // Least correlation of the median track with a second place. It is 0.55 to 0.68 on random texture
 // and in rooms, 0.80 to 0.99 on tiles of 26 to 75 px, bricks, dots and chessboards.
 constexpr double kAlike = 0.75;
-constexpr double kAbout = 0.1;      // less correlation by which a nearer place looks as similar
-constexpr double kLeast_px = 3;     // least distance of a second place [px of its level]
-constexpr int kAround = 5;          // tracks whose median is a track's period
-constexpr double kResolved_px = 6;  // least period on a level [px of the level]
+constexpr double kAlikeOnFine = 0.85;  // the same at half the size, for periods below 15 px
+constexpr int kFineReach = 16;         // distance of second places there [px of its level]
+constexpr double kAbout = 0.1;         // less correlation by which a nearer place looks as similar
+constexpr double kLeast_px = 3;        // least distance of a second place [px of its level]
+constexpr int kAround = 5;             // tracks whose median is a track's period
+constexpr double kResolved_px = 6;     // least period on a level [px of the level]
 constexpr double kCoarse = 0.3;  // less correlation of motions that are refined, on the first level
 constexpr double kFine = 0.15;   // the same of motions that are compared, at half the size
 constexpr double kLeastCompared =
     0.8;  // least correlation of a track that is compared, at half the size
+// Less difference of correlations is that of resampling: one motion may be by whole pixels.
+constexpr double kIndistinct = 0.01;
 constexpr int kMostMotions = 12;
 constexpr float kOutside = -2;  // value of a map where nothing was compared
 
@@ -201,6 +205,7 @@ std::vector<CommonMotion> common_motions(const Crossing& crossing,
 /// Returns by how many standard deviations more tracks correlate better under one motion than if
 /// both fitted alike (sign test). Differences of correlations have outliers.
 double margin_of(const CommonMotion& one, const CommonMotion& other) {
+  if (std::abs(one.typical - other.typical) < kIndistinct) return 0;
   const auto compared = one.correlations.array().max(other.correlations.array()) > kLeastCompared;
   const auto count = static_cast<double>(compared.count());
   const auto better = static_cast<double>(
@@ -223,22 +228,23 @@ std::pair<Vector2d, double> chosen_of(const std::vector<CommonMotion>& motions, 
   return {chosen->px, margin};
 }
 
-}  // namespace
-
-std::optional<Repetition> find_repetition(const SmoothedPyramid& reference,
-                                          const Matrix2Xd& raw_px) {
-  const int level = std::max(1, static_cast<int>(reference.size()) - 1 - kHalvings);
+/// Searches for second places on a level, up to `reach` away along both axes [px of the level].
+std::optional<Repetition> repetition_on(int level,
+                                        int reach,
+                                        double least_correlation,
+                                        const SmoothedPyramid& reference,
+                                        const Matrix2Xd& raw_px) {
   std::vector<int> alike;
   Matrix2Xd period_px(2, raw_px.cols());
   std::ptrdiff_t compared = 0;
   for (const int j : spread(raw_px.cols(), kReferenceTracks)) {
     const cv::Point place = on_level(raw_px.col(j), level);
     const cv::Mat& image = reference[level];
-    const cv::Mat map = correlation_map(image, image, place, place, reach_on(level, reference));
+    const cv::Mat map = correlation_map(image, image, place, place, reach);
     if (map.empty()) continue;
     ++compared;
     const auto second = second_place(map);
-    if (!second || second->correlation < kAlike) continue;
+    if (!second || second->correlation < least_correlation) continue;
     period_px.col(j) = from_level(second->shift, level);
     alike.push_back(j);
   }
@@ -255,6 +261,17 @@ std::optional<Repetition> find_repetition(const SmoothedPyramid& reference,
     repetition.period_px.col(j) = period_px.col(near[count / 2]);
   }
   return repetition;
+}
+
+}  // namespace
+
+std::optional<Repetition> find_repetition(const SmoothedPyramid& reference,
+                                          const Matrix2Xd& raw_px) {
+  const int coarse = std::max(1, static_cast<int>(reference.size()) - 1 - kHalvings);
+  auto found = repetition_on(coarse, reach_on(coarse, reference), kAlike, reference, raw_px);
+  // The coarse level does not resolve short periods.
+  return found || coarse == 1 ? found
+                              : repetition_on(1, kFineReach, kAlikeOnFine, reference, raw_px);
 }
 
 RepeatedFlow repeated_flow(const SmoothedPyramid& from,

@@ -66,11 +66,6 @@ std::shared_ptr<const NormalStudy> study_normals(const Inspection& inspection,
 /// Returns the true normal in the reference camera, towards it; nullopt if unknown.
 std::optional<Eigen::Vector3d> true_normal(const Inspection& inspection);
 
-/// Returns whether a track that starts in the reference frame has no observation in a frame of the
-/// window. Excluded tracks have none at all and are not lost.
-bool is_lost(const Window& window, int frame, int track);
-int lost_count(const Window& window, int frame);
-
 /// Observation of a track, and its prediction from its plane, the poses and the reference frame.
 struct ResidualVector {
   int track;

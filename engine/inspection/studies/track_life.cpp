@@ -282,18 +282,6 @@ TrackLife life_of(const Selection& selection, int column) {
 
 }  // namespace
 
-bool is_lost(const Window& window, int frame, int track) {
-  const auto seen = [&](int i) { return window.points_px[i].col(track).allFinite(); };
-  return seen(0) && !seen(frame);
-}
-
-int lost_count(const Window& window, int frame) {
-  int lost = 0;
-  for (int track = 0; track < window.track_count(); ++track)
-    lost += is_lost(window, frame, track) ? 1 : 0;
-  return lost;
-}
-
 std::vector<ResidualVector> residual_vectors(const Inspection& inspection, int frame_in_window) {
   const Window& window = *inspection.window;
   const Initialization& result = *inspection.initialization;

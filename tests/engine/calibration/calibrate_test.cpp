@@ -490,7 +490,7 @@ TEST(SelfCalibration, RefusesACameraThatKeepsItsTilt) {
   const FrameCache images = images_of(40, 1);
   const auto found =
       calibrate_from_plane(images, camera_of_view(kFilmingCamera.width, kFilmingCamera.height));
-  EXPECT_FALSE(found.ok);
+  EXPECT_FALSE(found.ok) << to_text(found);
   EXPECT_THAT(found.reason, HasSubstr("keeps its tilt to the plane"));
 }
 

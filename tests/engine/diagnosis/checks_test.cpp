@@ -125,7 +125,7 @@ TEST(ImplausibleIntrinsics, NameTheSizeThatTheyWereMadeFor) {
     ASSERT_EQ(found.size(), 1U) << scale;
     EXPECT_THAT(found[0].sentence, HasSubstr("for images of about 8")) << found[0].sentence;
     if (scale != 0.9)
-      EXPECT_EQ(found[0].advice, fmt::format("multiply fx, fy, cx and cy by {:.4g}", scale));
+      EXPECT_THAT(found[0].advice, HasSubstr(fmt::format("by {:.4g} (", scale)));
   }
 }
 
@@ -184,7 +184,7 @@ TEST(RepeatedTexture, IsWeakInAmbiguousFrames) {
   const Finding finding = found()[0];
   EXPECT_EQ(finding.key, "repeated-texture");
   EXPECT_EQ(finding.level, Level::weak);
-  EXPECT_THAT(finding.sentence, HasSubstr("every 22 px, and in 1 of 3 frames"));
+  EXPECT_THAT(finding.sentence, HasSubstr("every 24 px, and in 1 of 3 frames"));
   EXPECT_EQ(finding.tracks, tracks.ids);
   EXPECT_EQ(finding.frames, std::vector<int>{10});
 }

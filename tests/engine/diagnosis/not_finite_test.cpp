@@ -60,9 +60,9 @@ struct Field {
   std::function<void(T&, double)> set;
 };
 
-TEST(NotFinite, NamesEachFieldOfAResult) {
+std::vector<Field<Initialization>> fields_of_result() {
   using R = Initialization;
-  std::vector<Field<R>> fields{
+  return {
       {"plane.normal", [](R& r, double x) { r.plane.normal.x() = x; }},
       {"plane.distance", [](R& r, double x) { r.plane.distance = x; }},
       {"planes[0].plane.normal", [](R& r, double x) { r.planes[0].plane.normal.z() = x; }},
@@ -94,11 +94,15 @@ TEST(NotFinite, NamesEachFieldOfAResult) {
       {"verdict.criterion.planes", [](R& r, double x) { r.verdict->criterion->planes = x; }},
       {"verdict.criterion.free_points",
        [](R& r, double x) { r.verdict->criterion->free_points = x; }}};
+}
+
+std::vector<Field<Initialization>> numbers_of_uncertainty() {
+  using U = Uncertainty;
+  std::vector<Field<Initialization>> fields;
   const auto of_uncertainty = [&](const char* name, auto field) {
     fields.push_back({std::string("uncertainty.") + name,
-                      [field](R& r, double x) { field(*r.uncertainty) = x; }});
+                      [field](Initialization& r, double x) { field(*r.uncertainty) = x; }});
   };
-  using U = Uncertainty;
   of_uncertainty(
       "sigma_px", [](U & u) -> auto& { return u.sigma_px; });
   of_uncertainty(
@@ -127,6 +131,16 @@ TEST(NotFinite, NamesEachFieldOfAResult) {
       "bound_known_rotations_deg", [](U & u) -> auto& { return u.bound_known_rotations_deg; });
   of_uncertainty(
       "bound_unknown_bias_deg", [](U & u) -> auto& { return u.bound_unknown_bias_deg; });
+  return fields;
+}
+
+std::vector<Field<Initialization>> matrices_of_uncertainty() {
+  using U = Uncertainty;
+  std::vector<Field<Initialization>> fields;
+  const auto of_uncertainty = [&](const char* name, auto field) {
+    fields.push_back({std::string("uncertainty.") + name,
+                      [field](Initialization& r, double x) { field(*r.uncertainty) = x; }});
+  };
   of_uncertainty(
       "normal_covariance", [](U & u) -> auto& { return u.normal_covariance(1, 0); });
   of_uncertainty(
@@ -155,6 +169,13 @@ TEST(NotFinite, NamesEachFieldOfAResult) {
       [](U & u) -> auto& { return u.others[0].log_distance_sigma; });
   of_uncertainty(
       "bias_covariance", [](U & u) -> auto& { return (*u.bias_covariance)(0, 1); });
+  return fields;
+}
+
+TEST(NotFinite, NamesEachFieldOfAResult) {
+  std::vector<Field<Initialization>> fields = fields_of_result();
+  for (const auto& more : {numbers_of_uncertainty(), matrices_of_uncertainty()})
+    fields.insert(fields.end(), more.begin(), more.end());
   EXPECT_EQ(first_not_finite(complete_result()), "");
   EXPECT_EQ(first_not_finite(Initialization{}), "");
   for (const auto& [name, set] : fields) {

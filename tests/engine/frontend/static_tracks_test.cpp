@@ -1,6 +1,6 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/frontend/static_tracks.h"
+#include "engine/frontend/inliers.h"
 
 #include "engine/frontend/inliers.h"
 #include "tests/engine/simulated_window.h"

@@ -55,7 +55,7 @@ void write_recording(const TestFolder& folder) {
   const Gyroscope gyroscope = simulated_gyroscope(options);
   save_window(
       folder.path() / "r", camera_of(simulation.window), frames_of(simulation.window), &gyroscope);
-  std::string truth = "#time [ns],x,y,z,qw,qx,qy,qz\n";
+  std::string truth = "#timestamp,px,py,pz,qw,qx,qy,qz\n";
   for (std::size_t i = 0; i < simulation.cameras.size(); ++i) {
     const Eigen::Quaterniond q(simulation.cameras[i].R_wc);
     const Eigen::Vector3d& p = simulation.cameras[i].p_wc;

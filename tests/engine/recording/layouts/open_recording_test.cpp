@@ -110,7 +110,6 @@ TEST(StationaryInterval, EstimatesTheBias) {
     ASSERT_TRUE(rest);
     EXPECT_NEAR(1e-9 * static_cast<double>(rest->last_ns - rest->first_ns), 2, 0.3);
     EXPECT_LT(largest(rest->mean_rad_s - kBias), 4 * rest->sigma_rad_s);
-    EXPECT_LT(rest->sigma_rad_s, 1e-3);
     EXPECT_LT((rest->mean_rad_s - kBias).norm(), 0.001);
     EXPECT_NEAR(rest->sigma_rad_s, 0.002, 0.0005);  // the bias changes
   }
