@@ -3,6 +3,7 @@
 #include "engine/window/tracks.h"
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 
 namespace gpo {
@@ -14,12 +15,13 @@ constexpr double kUnseen = std::numeric_limits<double>::quiet_NaN();
 
 std::vector<int> ambiguous_frames(const Repetition& repetition) {
   const auto& margins = repetition.margins;
-  const auto ambiguous = [&](int i) {
-    return i < 1 || i >= std::ssize(margins) || margins[i] < kDistinctMotion;
+  const auto distinct = [&](int i) {
+    return i >= 1 && i < std::ssize(margins) && margins[i] >= kDistinctMotion &&
+           std::isfinite(margins[i]);
   };
   std::vector<int> frames;
   for (int i = 1; i < std::ssize(margins); ++i)
-    if (ambiguous(i - 1) && ambiguous(i) && ambiguous(i + 1)) frames.push_back(i);
+    if (margins[i] < kDistinctMotion && !distinct(i - 1) && !distinct(i + 1)) frames.push_back(i);
   return frames;
 }
 

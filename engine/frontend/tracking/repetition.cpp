@@ -40,6 +40,8 @@ constexpr double kLeastCompared =
 // Less difference of correlations is that of resampling: one motion may be by whole pixels.
 constexpr double kIndistinct = 0.01;
 constexpr int kMostMotions = 12;
+// The perspective changes motions by more than such a period, so that they have nothing in common.
+constexpr double kShort_px = 16;
 constexpr float kOutside = -2;  // value of a map where nothing was compared
 
 std::vector<int> spread(Eigen::Index tracks, Eigen::Index count) {
@@ -289,7 +291,7 @@ RepeatedFlow repeated_flow(const SmoothedPyramid& from,
   const auto [motion_px, margin] = chosen_of(motions, period_px / 2);
   std::vector<int> all(raw_px.cols());
   std::iota(all.begin(), all.end(), 0);
-  return {refined_from(crossing, motion_px, all).px, margin};
+  return {refined_from(crossing, motion_px, all).px, period_px < kShort_px ? 0 : margin};
 }
 
 }  // namespace gpo

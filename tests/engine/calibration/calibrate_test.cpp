@@ -443,8 +443,10 @@ FrameCache images_of(int count, double lean_deg) {
           const Vector3d ray =
               pose.R_wc *
               (*rays)[static_cast<int>(px.y()) * kFilmingCamera.width + static_cast<int>(px.x())];
-          // A texel is a pixel if the camera looks straight at the plane.
-          return 290 * (pose.p_wc - ray * pose.p_wc.z() / ray.z()).head<2>();
+          // A texel is a pixel if the camera looks straight at the plane. Bent, so that it does not
+          // repeat.
+          const Vector2d texel = 290 * (pose.p_wc - ray * pose.p_wc.z() / ray.z()).head<2>();
+          return texel + 12 * Vector2d(std::sin(texel.y() / 31), std::sin(texel.x() / 27));
         };
         cv::Mat bgr;
         cv::cvtColor(image_of({kFilmingCamera.width, kFilmingCamera.height}, place),

@@ -149,6 +149,8 @@ TEST(Repetition, IsNotAmbiguousBesideADistinctMotion) {
   EXPECT_EQ(frames({kNone, 5, 1, 5, 5, 1, 1, 5}), std::vector<int>{});
   EXPECT_EQ(frames({kNone, 1, 1, 5}), std::vector<int>{1});
   EXPECT_EQ(frames({kNone, 5, 1, -2, 1}), (std::vector<int>{3, 4}));
+  EXPECT_EQ(frames({kNone, 1, kNone, 1}),
+            (std::vector<int>{1, 3}));  // other motions left the image
   EXPECT_EQ(frames({kNone}), std::vector<int>{});
 }
 
