@@ -89,12 +89,12 @@ double largest_normalized_error(const CameraCalibration& found, const Camera& tr
   return largest;
 }
 
-/// Error of fx - fy in standard deviations. The focal lengths are strongly correlated.
-double normalized_aspect_error(const Camera& found, const Camera& truth) {
+/// Error of fx - fy in standard deviations. The focal lengths are correlated, by a board strongly.
+double normalized_aspect_error(const Camera& found, const Camera& truth, double most = 0.2) {
   const Eigen::MatrixXd covariance = from_upper_triangle(found.covariance);
   const double independent = covariance(0, 0) + covariance(1, 1);
   const double variance = independent - 2 * covariance(0, 1);
-  EXPECT_LT(variance, 0.2 * independent);
+  EXPECT_LT(variance, most * independent);
   return (found.fx - found.fy - truth.fx + truth.fy) / std::sqrt(variance);
 }
 
@@ -448,10 +448,11 @@ FrameCache images_of(int count, double lean_deg) {
           const Vector2d texel = 290 * (pose.p_wc - ray * pose.p_wc.z() / ray.z()).head<2>();
           return texel + 12 * Vector2d(std::sin(texel.y() / 31), std::sin(texel.x() / 27));
         };
-        cv::Mat bgr;
-        cv::cvtColor(image_of({kFilmingCamera.width, kFilmingCamera.height}, place),
-                     bgr,
-                     cv::COLOR_GRAY2BGR);
+        const cv::Mat exact = image_of({kFilmingCamera.width, kFilmingCamera.height}, place);
+        cv::Mat noise(exact.size(), CV_16S), gray, bgr;
+        cv::RNG(i + 1).fill(noise, cv::RNG::NORMAL, 0, 3);  // gray levels
+        cv::add(exact, noise, gray, cv::noArray(), CV_8U);
+        cv::cvtColor(gray, bgr, cv::COLOR_GRAY2BGR);
         return bgr;
       }};
 }
@@ -483,13 +484,13 @@ TEST(SelfCalibration, EstimatesTheCameraFromImagesOfAPlane) {
   EXPECT_NEAR(read.camera.fx, found.camera.fx, 1e-4);
   ASSERT_EQ(read.camera.sigmas.size(), 8);
   EXPECT_NEAR(read.camera.sigmas[0], found.camera.sigmas[0], 0.01 * read.camera.sigmas[0]);
-  EXPECT_LT(std::abs(normalized_aspect_error(read.camera, kFilmingCamera)), 3.5);
+  EXPECT_LT(std::abs(normalized_aspect_error(read.camera, kFilmingCamera, 0.6)), 3.5);
   ASSERT_TRUE(read.camera.readout);
   EXPECT_LT(std::abs(read.camera.readout->seconds), 4 * read.camera.readout->sigma_s);
 }
 
 TEST(SelfCalibration, RefusesACameraThatKeepsItsTilt) {
-  const FrameCache images = images_of(40, 1);
+  const FrameCache images = images_of(40, 0.5);
   const auto found =
       calibrate_from_plane(images, camera_of_view(kFilmingCamera.width, kFilmingCamera.height));
   EXPECT_FALSE(found.ok) << to_text(found);
