@@ -36,7 +36,7 @@ Eigen::Matrix2Xd coarse_flow(const SmoothedPyramid& from,
 /// Motions of places from one image to the next.
 struct PlaceMotions {
   Eigen::Matrix2Xd px;  ///< 2 x places
-  /// Of each place at half the size with that in the image before; -1 if it was not compared.
+  /// Correlation of each place with the image before, at half the size; -1 if not compared.
   Eigen::VectorXd correlations;
 };
 

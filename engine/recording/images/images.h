@@ -129,7 +129,7 @@ struct VideoIndex {
   double rate_hz = 0;                 ///< average according to the container; 0 if unknown
   int quarter_turns = 0;              ///< clockwise rotation from the stored to the shown image
   bool mirrored = false;  ///< whether players also mirror the image; the decoder does not
-  /// Of interlaced videos, of which the decoder returns the first fields; nullopt if progressive.
+  /// Field order of an interlaced video, whose first fields are decoded; nullopt if progressive.
   std::optional<FieldOrder> fields = std::nullopt;
   bool complete = true;  ///< false: `times` are only the first ones
 };

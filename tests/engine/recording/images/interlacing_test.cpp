@@ -1,6 +1,6 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-// Of an interlaced video the first fields are used, whatever its stream declares.
+// The first fields of an interlaced video are used, whatever its stream declares.
 #include "engine/recording/images/interlacing.h"
 
 #include "engine/recording/images/images.h"
