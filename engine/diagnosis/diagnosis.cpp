@@ -5,8 +5,8 @@
 #include "engine/base/error.h"
 #include "engine/diagnosis/checks.h"
 #include "engine/diagnosis/not_finite.h"
-#include "engine/methods/certainty/uncertainty.h"
-#include "engine/methods/certainty/window_evidence.h"
+#include "engine/methods/uncertainty/uncertainty.h"
+#include "engine/methods/uncertainty/window_evidence.h"
 #include "engine/methods/common/window_checks.h"
 
 #include <algorithm>

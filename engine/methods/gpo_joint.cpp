@@ -1,8 +1,6 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/geometry/statistics.h"
-#include "engine/methods/certainty/bends.h"
-#include "engine/methods/certainty/uncertainty.h"
 #include "engine/methods/common/window_checks.h"
 #include "engine/methods/initializers.h"
 #include "engine/methods/joint/joint_solution.h"
@@ -11,6 +9,8 @@
 #include "engine/methods/plane/plane_solver.h"
 #include "engine/methods/plane/rolling_shutter.h"
 #include "engine/methods/plane_fit.h"
+#include "engine/methods/uncertainty/bends.h"
+#include "engine/methods/uncertainty/uncertainty.h"
 
 #include <cmath>
 #include <limits>
@@ -138,16 +138,21 @@ PlaneMotion best_start(const FitTask& task, SolverReport& effort) {
   return best;
 }
 
-/// Returns the solution of the joint model that starts at a fit. With free rotations the plane's
-/// other decomposition may fit as well.
-std::optional<joint::Solution> solve_jointly(const FitTask& task, const Fit& fit) {
-  joint::Options options{.rotations = fit.rotations.model,
-                         .gyro_noise = fit.rotations.gyro_noise,
+joint::Options joint_options(const FitTask& task, const RotationUnknowns& rotations) {
+  joint::Options options{.rotations = rotations.model,
+                         .gyro_noise = rotations.gyro_noise,
                          .row_delay = std::nullopt,
                          .huber = task.options.loss == Loss::huber};
   if (task.options.shutter != Shutter::global) options.row_delay = unknown_row_delay(task.window);
   if (task.options.shutter == Shutter::known && task.window.row_delay)
     options.row_delay = task.window.row_delay;
+  return options;
+}
+
+/// Returns the solution of the joint model that starts at a fit. With free rotations the plane's
+/// other decomposition may fit as well.
+std::optional<joint::Solution> solve_jointly(const FitTask& task, const Fit& fit) {
+  const joint::Options options = joint_options(task, fit.rotations);
   const PlaneMotion start = facing(task.window, fit.solution.motion);
   auto solution = joint::solve(task.window, start, options, task.watch);
   const bool has_twin = fit.rotations.model == RotationModel::free && start.others.empty();
@@ -207,18 +212,54 @@ Initialization initialize_at_row_delay(const Window& window,
   return result;
 }
 
+/// Returns the window with exact clocks if the options say so.
+Window with_clock(Window window, const MethodOptions& options) {
+  if (!options.time_offset && window.gyro) window.gyro->time_offset_sigma_s = 0;
+  return window;
+}
+
+double sigma_px_of(const Window& window) { return homography_error_px(window) / kMedianOfRayleigh; }
+
 }  // namespace
 
-Initialization initialize_gpo_joint(const Window& window,
+Initialization restart_gpo_joint(const Window& given,
+                                 const Initialization& start,
+                                 const MethodOptions& options,
+                                 const Watch& watch) {
+  Window window = with_clock(given, options);
+  PlaneMotion motion = motion_of(start);
+  const RotationModel model = start.uncertainty ? start.uncertainty->rotations : window.rotations;
+  if (model == RotationModel::bias) motion.bias_rad_s = *start.bias_rad_s;
+  const RotationUnknowns rotations{model,
+                                   model == RotationModel::bias && window.gyro->noise_density > 0};
+  const FitTask of_all{window, options, sigma_px_of(window), watch};
+  const double row_delay_s = start.row_delay_s.value_or(0);
+  const auto result_of = [&](const PlaneMotion& end) {
+    RefusedSolution solution = solution_of(facing(window, end));
+    Initialization result;
+    result.ok = true;
+    result.plane = solution.plane;
+    result.cameras = std::move(solution.cameras);
+    return result;
+  };
+  if (of_all.latent(row_delay_s)) {
+    joint::Options of_joint = joint_options(of_all, rotations);
+    of_joint.uncertainty = false;
+    const auto joint = joint::solve(window, facing(window, motion), of_joint, watch);
+    return joint ? result_of(joint->motion) : failed("not determined");
+  }
+  if (row_delay_s != 0) window = without_rolling_shutter(window, motion, model, {row_delay_s});
+  const Fit fit = fit_planes(
+      {window, options, of_all.sigma_px, watch}, motion, rotations, {Rounds{}.count, true});
+  return converged(fit) ? result_of(fit.solution.motion) : not_converged(fit.solution.solver);
+}
+
+Initialization initialize_gpo_joint(const Window& given,
                                     const MethodOptions& options,
                                     const Watch& watch) {
-  if (!options.time_offset && gyro_unknowns(window, window.rotations) > 3) {
-    Window exact_clock = window;
-    exact_clock.gyro->time_offset_sigma_s = 0;
-    return initialize_gpo_joint(exact_clock, options, watch);
-  }
+  const Window window = with_clock(given, options);
   if (auto reason = reason_not_to_try(window)) return failed(*reason);
-  const FitTask task{window, options, homography_error_px(window) / kMedianOfRayleigh, watch};
+  const FitTask task{window, options, sigma_px_of(window), watch};
   if (options.shutter == Shutter::known && window.row_delay && !task.latent())
     return initialize_at_row_delay(window, options, watch);
   SolverReport effort;
@@ -246,7 +287,9 @@ Initialization initialize_gpo_joint(const Window& window,
   result.uncertainty =
       joint ? std::optional(joint->uncertainty)
             : uncertainty_of({fit.window, fit.observations, motion}, fit.rotations.model);
-  if (joint) add_bends({fit.window, fit.observations, motion}, *result.uncertainty);
+  if (joint)
+    result.uncertainty->bend_sigma_deg =
+        bend_sigma_deg({fit.window, fit.observations, motion}, result.uncertainty->sigma_px);
   set_plane_uncertainties(result);
   if (window.rotations == RotationModel::bias) result.bias_rad_s = bias_rad_s;
   if (gyro_unknowns(window, fit.rotations.model) > 3)

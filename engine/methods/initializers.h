@@ -32,6 +32,13 @@ Initialization initialize_gpo_joint(const Window& window,
                                     const MethodOptions& options,
                                     const Watch& watch);
 
+/// Returns plane and cameras of `initialize_gpo_joint` for a window without some tracks, started
+/// from the result of all tracks, with the same unknowns.
+Initialization restart_gpo_joint(const Window& window,
+                                 const Initialization& start,
+                                 const MethodOptions& options,
+                                 const Watch& watch);
+
 /// Closed-form normal, with translations by linear least squares over the inliers.
 Initialization initialize_closed_form(const Window& window, const Watch& watch);
 

@@ -3,10 +3,10 @@
 #include "engine/methods/methods.h"
 
 #include "engine/base/error.h"
-#include "engine/methods/certainty/jackknife.h"
-#include "engine/methods/certainty/uncertainty.h"
 #include "engine/methods/initializers.h"
 #include "engine/methods/plane/linear_solutions.h"
+#include "engine/methods/uncertainty/regions.h"
+#include "engine/methods/uncertainty/uncertainty.h"
 
 #include <algorithm>
 
@@ -29,6 +29,14 @@ constexpr StartMethod kPnp{"PnP", initialize_pnp};
 template <const StartMethod& start, Refinement refine>
 Initialization refined(const Window& window, const MethodOptions& /*options*/, const Watch& watch) {
   return refined_start(window, start, refine, watch);
+}
+
+template <Refinement refine>
+Initialization again(const Window& window,
+                     const Initialization& start,
+                     const MethodOptions& /*options*/,
+                     const Watch& watch) {
+  return refine(window, start, watch);
 }
 
 /// Adds the window's other planes to the result of a method that estimates only one.
@@ -78,9 +86,10 @@ std::vector<Method> our_methods() {
   };
   // clang-format on
   for (Method& method : table) {
-    method.resampled = method.rotations.has_value();
-    if (method.key == "ba" || method.key == "pnp_ba") method.restart = refine_bundle;
-    if (method.key == "pba") method.restart = refine_on_plane<PlaneNormal::free>;
+    method.resampled = true;
+    if (method.key == "ba" || method.key == "pnp_ba") method.restart = again<refine_bundle>;
+    if (method.key == "pba") method.restart = again<refine_on_plane<PlaneNormal::free>>;
+    if (method.key == "gpo_joint") method.restart = restart_gpo_joint;
   }
   return table;
 }
@@ -120,13 +129,14 @@ std::optional<NoiseSpread> own_noise(const Method& method,
                                      const Window& window,
                                      const Initialization& result,
                                      const std::function<Initialization(const Window&)>& initialize,
+                                     const MethodOptions& options,
                                      const Watch& watch) {
   if (!method.resampled || !result.ok) return std::nullopt;
-  if (method.restart == nullptr) return jackknife(window, result, initialize);
+  if (!method.restart) return spread_by_regions(window, result, initialize);
   Initialization start = result;
   start.points.clear();  // they have the places of the tracks in the whole window
-  return jackknife(window, result, [&](const Window& without_group) {
-    return method.restart(without_group, start, watch);
+  return spread_by_regions(window, result, [&](const Window& without_region) {
+    return method.restart(without_region, start, options, watch);
   });
 }
 
@@ -137,8 +147,11 @@ Initialization with_uncertainty(const Method& method, const Window& window, Init
     uncertainty = uncertainty_by_tracks(*method.rotations, window, result);
   else if (uncertainty)
     uncertainty->own = true;
-  if (uncertainty && result.own_noise && !result.own_noise->unstable)
-    uncertainty = with_own_noise(std::move(*uncertainty), result.plane, *result.own_noise);
+  if (uncertainty) {
+    const bool known = result.own_noise && !result.own_noise->unstable;
+    uncertainty = with_size(
+        std::move(*uncertainty), window, result.plane, known ? result.own_noise : std::nullopt);
+  }
   if (result.planes.empty() && !window.planes.empty()) add_planes(window, result);
   set_plane_uncertainties(result);
   return result;

@@ -50,10 +50,14 @@ struct Method {
       initialize = {};
   /// Description and assumptions, two sentences for people.
   std::string help = "Your own initializer, a separate process";
-  /// True if `own_noise` runs it again without groups of tracks.
+  /// True if `own_noise` runs it again without each region of the image.
   bool resampled = false;
-  /// For these runs: starts from a result of all tracks; null: they start as usual.
-  Refinement restart = nullptr;
+  /// For these runs: starts from the result of all tracks; empty: they start as usual.
+  std::function<Initialization(const Window& window,
+                               const Initialization& start,
+                               const MethodOptions& options,
+                               const Watch& watch)>
+      restart = {};
   // The other members belong to a user's own method; they are empty for ours.
   /// Initializes from all data of the recording.
   std::function<Initialization(const Window& window, const Sources& sources, const Watch& watch)>
@@ -111,12 +115,14 @@ class MethodTable {
   std::vector<std::shared_ptr<const Method>> own_;
 };
 
-/// Returns the covariances of a method's own estimates for `Initialization::own_noise`; nullopt if
-/// the method is not resampled or the result does not allow it.
+/// Returns the covariances of a method's own estimates for `Initialization::own_noise`
+/// (`spread_by_regions`); nullopt if the method is not resampled or the result does not allow it.
+/// `initialize` runs the method from the start.
 std::optional<NoiseSpread> own_noise(const Method& method,
                                      const Window& window,
                                      const Initialization& result,
                                      const std::function<Initialization(const Window&)>& initialize,
+                                     const MethodOptions& options,
                                      const Watch& watch);
 
 /// Adds the uncertainty and the errors of the fit to a method's result that is ok.

@@ -3,10 +3,10 @@
 #include "engine/methods/plane_fit.h"
 
 #include "engine/geometry/statistics.h"
-#include "engine/methods/certainty/solution_moves.h"
 #include "engine/methods/plane/linear_solutions.h"
 #include "engine/methods/plane/plane_weights.h"
 #include "engine/methods/plane/rolling_shutter.h"
+#include "engine/methods/uncertainty/solution_moves.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,6 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/methods/certainty/solution_moves.h"
+#include "engine/methods/uncertainty/solution_moves.h"
 #include "engine/methods/plane/plane_motion.h"
 #include "engine/methods/plane/plane_result.h"
 #include "engine/methods/plane/rolling_shutter.h"

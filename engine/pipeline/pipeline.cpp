@@ -6,9 +6,9 @@
 #include "engine/frontend/gyroscope_alignment.h"
 #include "engine/frontend/inliers.h"
 #include "engine/frontend/readout_compensation.h"
-#include "engine/methods/certainty/growth.h"
-#include "engine/methods/certainty/uncertainty.h"
-#include "engine/methods/certainty/window_evidence.h"
+#include "engine/methods/uncertainty/growth.h"
+#include "engine/methods/uncertainty/uncertainty.h"
+#include "engine/methods/uncertainty/window_evidence.h"
 #include "engine/methods/common/window_checks.h"
 #include "engine/pipeline/method_defaults.h"
 
@@ -269,7 +269,8 @@ void add_own_noise(const Window& window,
                    Initialization& result) {
   const Watch watch{stop};
   const auto again = [&](const Window& w) { return run(w, sources, options, watch); };
-  result.own_noise = own_noise(options.method.row(), window, result, again, watch);
+  result.own_noise =
+      own_noise(options.method.row(), window, result, again, options.method_options, watch);
 }
 
 std::vector<Verdict> growing_numbers(const Window& window, Lens lens, const std::stop_token& stop) {

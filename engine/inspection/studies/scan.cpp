@@ -5,7 +5,7 @@
 #include "engine/geometry/decompositions.h"
 #include "engine/inspection/inspector.h"
 #include "engine/inspection/studies/studies.h"
-#include "engine/methods/certainty/window_evidence.h"
+#include "engine/methods/uncertainty/window_evidence.h"
 #include "engine/window/timestamps.h"
 
 #include <algorithm>

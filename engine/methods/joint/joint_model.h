@@ -23,6 +23,7 @@ struct Options {
   bool gyro_noise = false;
   std::optional<RowDelayPrior> row_delay = std::nullopt;  ///< nullopt: global shutter
   bool huber = true;
+  bool uncertainty = true;  ///< of the solution
   // Unknowns that are held contribute to the uncertainty only.
   bool lens_parameters = true;
   bool lens_residual = true;

@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/methods/joint/joint_uncertainty.h"
 
-#include "engine/methods/certainty/sandwich.h"
-#include "engine/methods/certainty/solution_moves.h"
+#include "engine/methods/uncertainty/sandwich.h"
+#include "engine/methods/uncertainty/solution_moves.h"
 
 #include <algorithm>
 #include <cmath>
@@ -20,54 +20,6 @@ using Eigen::Matrix3d;
 using Eigen::MatrixXd;
 using Eigen::Vector2d;
 using Eigen::Vector3d;
-
-double normal_variance(const MatrixXd& covariance) {
-  return covariance.topLeftCorner<2, 2>().trace();
-}
-
-/// Returns the sum of the squared moves of the normal by all tracks of a region, for `side` x
-/// `side` regions of the image with equal numbers of tracks.
-double normal_variance_by_region(const Model& model, const MatrixXd& moves, Index side) {
-  const Index count = moves.cols();
-  std::vector<Index> order(count);
-  std::iota(order.begin(), order.end(), 0);
-  const auto sort = [&](Index first, Index last, int axis) {
-    std::sort(order.begin() + first, order.begin() + last, [&](Index a, Index b) {
-      return model.tracks()[a].reference_px(axis) < model.tracks()[b].reference_px(axis);
-    });
-  };
-  double sum = 0;
-  sort(0, count, 0);
-  for (Index column = 0; column < side; ++column) {
-    const Index first = column * count / side;
-    const Index size = (column + 1) * count / side - first;
-    sort(first, first + size, 1);
-    for (Index row = 0; row < side; ++row) {
-      Vector2d region = Vector2d::Zero();
-      for (Index k = row * size / side; k < (row + 1) * size / side; ++k)
-        region += moves.col(order[first + k]).head<2>();
-      sum += region.squaredNorm();
-    }
-  }
-  const auto regions = static_cast<double>(side * side);
-  return regions / (regions - 1) * sum;
-}
-
-/// Returns the ratio of the normal's variance with errors that neighboring tracks share to that
-/// with independent tracks, at least 1.
-double neighbors_ratio(const Model& model, const MatrixXd& moves) {
-  constexpr Index kQuarters = 2, kSixteenths = 4;
-  constexpr double kFreedomOfQuarters = 3, kFreedomOfSixteenths = 15;
-  /// Exceeded by chance in one window of ten.
-  constexpr double kSignificant = 1.45;
-  if (moves.cols() < 3 * kSixteenths * kSixteenths) return 1;
-  const double independent = moves.topRows<2>().squaredNorm();
-  const double quarters = normal_variance_by_region(model, moves, kQuarters) / independent;
-  const double sixteenths = normal_variance_by_region(model, moves, kSixteenths) / independent;
-  const double mean = (kFreedomOfQuarters * quarters + kFreedomOfSixteenths * sixteenths) /
-                      (kFreedomOfQuarters + kFreedomOfSixteenths);
-  return std::max({1.0, mean, mean > kSignificant ? quarters : 1});
-}
 
 /// The unknowns that results depend on: those that all frames share, the row delay, and all
 /// translations from here on.
@@ -221,16 +173,12 @@ Uncertainty uncertainty_of(const Model& model,
   const MatrixXd moves =
       std::sqrt(freedom * tracks / std::max(1.0, tracks - 1)) * (gain.transpose() * at.by_track);
   const MatrixXd of_priors = variance * spread_of_priors(prior, gain);
-  const double of_normal = moves.topRows<2>().squaredNorm();
-  const double independent = variance * normal_variance(gain) - normal_variance(of_priors);
-  const double wider = std::max({1.0, independent / of_normal, neighbors_ratio(model, moves)});
   const MatrixXd by_lens = moves_by_lens(layout, at.A, gain);
-  const MatrixXd of_noise = variance * gain(wanted, Eigen::all) - of_priors;
+  const MatrixXd independent = variance * gain(wanted, Eigen::all) - of_priors;
   const MatrixXd square = square_of(moves);
-  MatrixXd covariance =
-      of_priors + wider * with_blocks_of(square,
-                                         blocks_of_results(layout),
-                                         shrunk_covariance(moves, square, of_noise));
+  const MatrixXd of_noise = with_blocks_of(
+      square, blocks_of_results(layout), shrunk_covariance(moves, square, independent));
+  MatrixXd covariance = of_priors + of_noise;
   if (!layout.typical_lens) covariance += by_lens * by_lens.transpose();
 
   Uncertainty result;
@@ -238,8 +186,12 @@ Uncertainty uncertainty_of(const Model& model,
   result.tracks = static_cast<int>(model.tracks().size());
   result.rotations = model.options().rotations;
   add_planes(layout, state.motion, covariance, result);
-  result.joint_covariance = moves_of_results(
-      layout, state.motion, moves_of_results(layout, state.motion, covariance).transpose());
+  const auto covariance_of_results = [&](const MatrixXd& of_unknowns) -> MatrixXd {
+    return moves_of_results(
+        layout, state.motion, moves_of_results(layout, state.motion, of_unknowns).transpose());
+  };
+  result.joint_covariance = covariance_of_results(covariance);
+  result.noise = noise_spread(state.motion, covariance_of_results(of_noise), result);
   result.pose_covariance = moves_of_poses(
       model, state.motion, moves_of_poses(model, state.motion, covariance).transpose());
   result.center_covariances.assign(layout.frames, Matrix3d::Zero());
@@ -253,7 +205,6 @@ Uncertainty uncertainty_of(const Model& model,
   result.bound_known_rotations_deg = bound_deg(layout, at, nullptr, scales.sigma_px);
   if (layout.row_delay > 0)
     result.row_delay_sigma_s = std::sqrt(covariance(layout.at_row_delay(), layout.at_row_delay()));
-  if (wider > 1) result.neighbors_sigma_deg = degrees(std::sqrt((wider - 1) * of_normal));
   add_lens_parts(layout, residual_part_deg(layout, gain, scales), by_lens, result);
   if (!layout.typical_lens) return result;
   result.typical_lens_moves = {moves_of_results(layout, state.motion, by_lens),

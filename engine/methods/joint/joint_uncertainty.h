@@ -23,9 +23,8 @@ double reference_noise_px(const Model& model,
 /// eq. 28), with `at` linearized where it is held at zero.
 void find_lens_residual(const Model& model, const State& state, const Normals& at, Scales& scales);
 
-/// Returns the uncertainty of a solution: the cluster-robust covariance with tracks as clusters, at
-/// least that of independent noise, widened if the errors of neighboring tracks agree, plus the
-/// contribution of the priors (engine/method.md, eq. 29). `at` has the curvature of the loss.
+/// Returns the uncertainty of a solution: the cluster-robust covariance with tracks as clusters and
+/// the contribution of the priors (engine/method.md, eq. 29). `at` has the curvature of the loss.
 Uncertainty uncertainty_of(const Model& model,
                            const State& state,
                            const Normals& at,

@@ -1,8 +1,8 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/geometry/statistics.h"
-#include "engine/methods/certainty/shared_information.h"
-#include "engine/methods/certainty/uncertainty.h"
+#include "engine/methods/uncertainty/shared_information.h"
+#include "engine/methods/uncertainty/uncertainty.h"
 #include "engine/methods/initializers.h"
 #include "engine/methods/methods.h"
 #include "tests/engine/methods/method_cases.h"

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "engine/diagnosis/diagnosis.h"
 #include "engine/methods/common/initialization.h"
 #include "engine/methods/common/method_options.h"
 #include "engine/window/window.h"
@@ -63,6 +64,17 @@ inline Initialization perturbed_truth(const Simulation& truth, const Perturbatio
 inline Initialization successful(Initialization result) {
   if (!result.ok) throw std::runtime_error(result.reason);
   return result;
+}
+
+/// Returns the assessed result of a method with its spread by regions.
+inline Initialization resampled_by(const char* key,
+                                   const Window& window,
+                                   const MethodOptions& options = {}) {
+  const Method& method = find_method(key);
+  const auto run = [&](const Window& w) { return method.initialize(w, options, {}); };
+  Initialization result = run(window);
+  result.own_noise = own_noise(method, window, result, run, options, {});
+  return assessed(method, window, std::move(result));
 }
 
 inline double normal_error_deg(const Initialization& result, const Simulation& truth) {

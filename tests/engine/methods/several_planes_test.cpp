@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/diagnosis/diagnosis.h"
 #include "engine/geometry/plane.h"
-#include "engine/methods/certainty/uncertainty.h"
+#include "engine/methods/uncertainty/uncertainty.h"
 #include "engine/methods/methods.h"
 #include "engine/methods/plane/linear_solutions.h"
 #include "engine/methods/plane/plane_motion.h"

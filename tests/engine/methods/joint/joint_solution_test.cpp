@@ -5,6 +5,7 @@
 
 #include "engine/geometry/statistics.h"
 #include "engine/methods/initializers.h"
+#include "tests/engine/methods/method_cases.h"
 #include "tests/engine/simulated_window.h"
 
 #include <cmath>
@@ -232,7 +233,7 @@ TEST(JointSolution, IncludesTheBendOfASurface) {
     }
   }
   simulation = with_fitted_homographies(std::move(simulation));
-  const Initialization result = initialize_gpo_joint(simulation.window, kLatent, {});
+  const Initialization result = resampled_by("gpo_joint", simulation.window, kLatent);
   ASSERT_TRUE(result.ok) << result.reason;
   ASSERT_TRUE(result.uncertainty->bend_sigma_deg);
   EXPECT_GT(result.uncertainty->normal_sigma_deg, *result.uncertainty->bend_sigma_deg);

@@ -1,13 +1,14 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/methods/certainty/jackknife.h"
+#include "engine/methods/uncertainty/regions.h"
 
 #include "engine/diagnosis/diagnosis.h"
 #include "engine/geometry/homography.h"
 #include "engine/geometry/statistics.h"
-#include "engine/methods/certainty/solution_moves.h"
+#include "engine/methods/uncertainty/solution_moves.h"
 #include "engine/methods/methods.h"
 #include "engine/methods/plane/rolling_shutter.h"
+#include "tests/engine/methods/method_cases.h"
 #include "tests/engine/simulated_window.h"
 
 #include <algorithm>
@@ -21,15 +22,6 @@ namespace gpo::test {
 namespace {
 
 using Eigen::Vector3d;
-
-/// Returns the result of a method with its own uncertainty.
-Initialization resampled_by(const char* key, const Window& window) {
-  const Method& method = find_method(key);
-  const auto run = [&](const Window& w) { return method.initialize(w, {}, {}); };
-  Initialization result = run(window);
-  result.own_noise = own_noise(method, window, result, run, {});
-  return assessed(method, window, std::move(result));
-}
 
 double normal_square(const Initialization& result, const Simulation& truth) {
   const Vector3d error = result.plane.normal - truth.plane.normal;
@@ -109,7 +101,7 @@ TEST(OwnUncertainty, IsMissingForMethodsThatAreNotResampled) {
   method.resampled = false;
   const Window window = noisy_window(1).window;
   const auto run = [&](const Window& w) { return method.initialize(w, {}, {}); };
-  EXPECT_FALSE(own_noise(method, window, run(window), run, {}));
+  EXPECT_FALSE(own_noise(method, window, run(window), run, {}, {}));
   EXPECT_FALSE(assessed(method, window, run(window)).uncertainty->own);
 }
 
@@ -120,13 +112,13 @@ TEST(OwnUncertainty, MethodThatFailsWithoutAnyGroupOfTracksIsNotReady) {
   EXPECT_EQ(assessed(method, window, result).verdict->readiness, Readiness::ready);
   Initialization doubtful = result;
   const auto fails = [](const Window&) { return failed("too few tracks"); };
-  doubtful.own_noise = own_noise(method, window, result, fails, {});
+  doubtful.own_noise = own_noise(method, window, result, fails, {}, {});
   ASSERT_TRUE(doubtful.own_noise && doubtful.own_noise->unstable);
   doubtful = assessed(method, window, doubtful);
   ASSERT_TRUE(doubtful.ok);
   EXPECT_EQ(doubtful.verdict->readiness, Readiness::weak);
   EXPECT_EQ(doubtful.verdict->reason,
-            "without a tenth of the tracks the method mostly fails or finds another plane normal");
+            "without a ninth of the tracks the method mostly fails or finds another plane normal");
   EXPECT_FALSE(doubtful.uncertainty->own);
 }
 

@@ -1,12 +1,13 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/methods/certainty/uncertainty.h"
+#include "engine/methods/uncertainty/uncertainty.h"
 
 #include "engine/diagnosis/diagnosis.h"
-#include "engine/methods/certainty/sandwich.h"
-#include "engine/methods/certainty/shared_information.h"
+#include "engine/methods/uncertainty/sandwich.h"
+#include "engine/methods/uncertainty/shared_information.h"
 #include "engine/methods/methods.h"
 #include "engine/window/window.h"
+#include "tests/engine/methods/method_cases.h"
 #include "tests/engine/simulated_window.h"
 
 #include <array>
@@ -265,8 +266,7 @@ Consistency consistency_of_windows(double bent_by_px, ErrorModel error = ErrorMo
     bend_images(truth.window, bent_by_px, seed);
     truth = with_fitted_homographies(truth);
     truth.window.rotations = RotationModel::free;
-    const Initialization result =
-        find_method("gpo_joint").initialize(truth.window, {.error = error}, {});
+    const Initialization result = resampled_by("gpo_joint", truth.window, {.error = error});
     if (!result.ok) continue;
     const Uncertainty& u = *result.uncertainty;
     const double sigmas = angle_deg(result.plane.normal, truth.plane.normal) / u.normal_sigma_deg;

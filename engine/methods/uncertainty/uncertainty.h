@@ -12,8 +12,8 @@
 
 namespace gpo {
 
-/// of_noise: without errors of neighbors and surfaces, and without `Uncertainty::joint_covariance`,
-/// which takes 1 to 2 ms for 30 frames and grows with the square of their number.
+/// of_noise: without the bend of the surface, and without `Uncertainty::joint_covariance`, which
+/// takes 1 to 2 ms for 30 frames and grows with the square of their number.
 enum class Errors { of_noise, all };
 
 /// Returns the uncertainty of a solution over weighted observations, by a method for which the

@@ -1,6 +1,6 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/methods/certainty/window_evidence.h"
+#include "engine/methods/uncertainty/window_evidence.h"
 
 #include "engine/geometry/homography.h"
 #include "engine/methods/common/window_checks.h"

@@ -1,17 +1,15 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/methods/certainty/uncertainty.h"
+#include "engine/methods/uncertainty/uncertainty.h"
 
-#include "engine/methods/certainty/bends.h"
-#include "engine/methods/certainty/neighbors.h"
-#include "engine/methods/certainty/sandwich.h"
-#include "engine/methods/certainty/shared_information.h"
-#include "engine/methods/certainty/solution_moves.h"
 #include "engine/methods/plane/rolling_shutter.h"
+#include "engine/methods/uncertainty/bends.h"
+#include "engine/methods/uncertainty/sandwich.h"
+#include "engine/methods/uncertainty/shared_information.h"
+#include "engine/methods/uncertainty/solution_moves.h"
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <set>
 #include <utility>
 #include <vector>
@@ -146,38 +144,21 @@ void set_typical_lens(const Sandwich& sandwich, Errors errors, Uncertainty& resu
   if (errors == Errors::all) result.typical_lens_moves.results = moves_of_results(sandwich, moves);
 }
 
-using OfPlanes = std::vector<std::optional<Eigen::Matrix2d>>;
-
-/// Adds the covariances of all planes' normals and distances from noise, neighbors and bend. The
-/// latter two are empty for a held gyroscope: its errors would affect both, and it has its own
-/// share.
-void add_plane_covariances(const SolvedPlanes& solved,
+void add_plane_covariances(const PlaneMotion& motion,
                            const SharedMatrix& covariance,
-                           const OfPlanes& neighbors,
-                           const OfPlanes& bends,
                            Uncertainty& result) {
   const auto normal_covariance = [&](const Vector3d& normal, int plane) -> Matrix3d {
     const int at = UnknownsLayout::of_plane(plane);
-    const auto zero = Eigen::Matrix2d::Zero();
-    const Eigen::Matrix2d noise = covariance.block<2, 2>(at, at);
-    const Eigen::Matrix2d flat = noise + neighbors[plane].value_or(zero);
-    const Eigen::Matrix2d all = flat + bends[plane].value_or(zero);
     const auto N = normal_tangents(normal);
-    return N * all * N.transpose();
+    return N * covariance.block<2, 2>(at, at) * N.transpose();
   };
-  if (neighbors[0]) result.neighbors_sigma_deg = degrees(std::sqrt(neighbors[0]->trace()));
-  if (bends[0]) result.bend_sigma_deg = degrees(std::sqrt(bends[0]->trace()));
-  result.normal_covariance = normal_covariance(solved.motion.normal, 0);
+  result.normal_covariance = normal_covariance(motion.normal, 0);
   result.normal_sigma_deg = degrees(std::sqrt(result.normal_covariance.trace()));
-  for (int k = 1; k < solved.observations.plane_count(); ++k) {
+  for (int k = 1; k <= std::ssize(motion.others); ++k) {
     const int at = UnknownsLayout::of_plane(k) + 2;
-    result.others.push_back({normal_covariance(solved.motion.others[k - 1].m.normalized(), k),
+    result.others.push_back({normal_covariance(motion.others[k - 1].m.normalized(), k),
                              std::sqrt(std::max(0.0, covariance(at, at)))});
   }
-}
-
-double trace_of(const std::optional<Eigen::Matrix2d>& covariance) {
-  return covariance ? covariance->trace() : 0;
 }
 
 /// Adds the covariances of bias and time offset, if they are estimated.
@@ -186,22 +167,6 @@ void add_gyro(const UnknownsLayout& layout, const SharedMatrix& covariance, Unce
   if (result.rotations != RotationModel::bias) return;
   result.bias_covariance = covariance.block<3, 3>(gyro, gyro);
   if (layout.gyro > 3) result.time_offset_sigma_s = std::sqrt(covariance(gyro + 3, gyro + 3));
-}
-
-/// `beyond`: variance of the normal by errors of neighbors and surfaces.
-void widen(const Sandwich& sandwich,
-           const SharedMatrix& by_noise,
-           double beyond,
-           Uncertainty& result) {
-  const auto& [solved, bread, inverse] = sandwich;
-  std::vector<int> order(bread.layout.size());
-  std::iota(order.begin(), order.end(), 0);
-  std::rotate(order.begin(), order.begin() + bread.layout.of_gyro(), order.end());
-  widen_by_systematic_errors(
-      solved,
-      1 + beyond / by_noise.topLeftCorner<2, 2>().trace(),
-      {by_noise(order, order), results_by_shared(solved.motion, bread)(Eigen::all, order)},
-      result);
 }
 
 /// The row delay of points that a method takes as seen at once.
@@ -261,19 +226,11 @@ std::optional<Uncertainty> uncertainty_of(const SolvedPlanes& solved,
   const double degrees_of_freedom = residuals / std::max(1.0, residuals - unknowns);
   const Influences influences = influences_of(sandwich);
   Spread spread = spread_of(sandwich, influences, degrees_of_freedom);
-  const SharedMatrix by_noise = spread.shared;
   Uncertainty result;
   result.sigma_px = sigma_px;
   result.rotations = model;
   result.tracks = tracks_of(observations);
-  OfPlanes neighbors(observations.plane_count());
-  OfPlanes bends(observations.plane_count());
-  if (!holds_gyro && errors != Errors::of_noise) {
-    neighbors = neighbors_spread(solved, model, sigma_px, spread.shared);
-    bends = bends_of(solved, sigma_px);
-  }
   result.noise = marginals(motion, bread, spread);
-  if (neighbors[0]) result.noise.normal += *neighbors[0];
   const double without_lens = spread.shared.topLeftCorner<2, 2>().trace();
   std::vector<SolutionMove> moves_of_image = moves_by_lens(sandwich, window.lens_moves_px);
   for (const SolutionMove& move : moves_of_image) spread.add(move);
@@ -289,7 +246,7 @@ std::optional<Uncertainty> uncertainty_of(const SolvedPlanes& solved,
     add_held_gyro(sandwich, *linearized, degrees_of_freedom, spread, result);
   else
     spread.shared += prior_share(sandwich, sigma_px);
-  add_plane_covariances(solved, spread.shared, neighbors, bends, result);
+  add_plane_covariances(motion, spread.shared, result);
   if (window.lens_moves_px.empty()) set_typical_lens(sandwich, errors, result);
   NoiseSpread all = marginals(motion, bread, spread);
   result.center_covariances = std::move(all.centers);
@@ -300,7 +257,8 @@ std::optional<Uncertainty> uncertainty_of(const SolvedPlanes& solved,
     result.joint_bias_rows = bread.layout.gyro;
   }
   add_gyro(bread.layout, spread.shared, result);
-  widen(sandwich, by_noise, trace_of(neighbors[0]) + trace_of(bends[0]), result);
+  // Errors of a held gyroscope look like a bend, and have their own share.
+  if (errors == Errors::all && !holds_gyro) result.bend_sigma_deg = bend_sigma_deg(solved, sigma_px);
   add_bounds(solved, *linearized, result);
   return result;
 }

@@ -1,6 +1,6 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/methods/certainty/shared_information.h"
+#include "engine/methods/uncertainty/shared_information.h"
 
 #include "engine/geometry/decompositions.h"
 #include "engine/methods/plane/plane_motion.h"

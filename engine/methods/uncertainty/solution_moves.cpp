@@ -1,9 +1,9 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/methods/certainty/solution_moves.h"
+#include "engine/methods/uncertainty/solution_moves.h"
 
-#include "engine/methods/certainty/shared_information.h"
 #include "engine/methods/plane/plane_weights.h"
+#include "engine/methods/uncertainty/shared_information.h"
 
 #include <algorithm>
 #include <cmath>
@@ -287,21 +287,34 @@ Eigen::MatrixXd joint_covariance(const Sandwich& sandwich,
   return with_blocks_of(square + M * rest * M.transpose(), blocks, shrunk) + square_of(of_others);
 }
 
+NoiseSpread noise_spread(const PlaneMotion& motion,
+                         const Eigen::MatrixXd& covariance,
+                         const Uncertainty& u) {
+  const auto tangents = normal_tangents(motion.normal);
+  const Eigen::Index planes_at = covariance.rows() - 3 * std::ssize(u.others) - 2;
+  NoiseSpread spread{covariance.block<2, 2>(planes_at, planes_at), {Eigen::Matrix3d::Zero()}, {0}};
+  for (std::size_t i = 1; i < motion.tau.size(); ++i) {
+    const auto at = static_cast<Eigen::Index>(3 * (i - 1));
+    spread.centers.emplace_back(covariance.block<3, 3>(at, at));
+    Eigen::VectorXd ratio = Eigen::VectorXd::Zero(covariance.rows());
+    ratio.segment<3>(at) = motion.normal;
+    ratio.segment<2>(planes_at) = -(tangents.transpose() * motion.tau[i]);
+    spread.distance_ratios.push_back(ratio.dot(covariance * ratio));
+  }
+  return spread;
+}
+
 void add_to_marginals(const PlaneMotion& motion, const Eigen::MatrixXd& change, Uncertainty& u) {
   const auto add = [](double variance, double& sigma) {
     sigma = std::sqrt(std::max(0.0, sigma * sigma + variance));
   };
-  const auto tangents = normal_tangents(motion.normal);
+  const NoiseSpread spread = noise_spread(motion, change, u);
+  for (std::size_t i = 1; i < motion.tau.size(); ++i) {
+    u.center_covariances[i] += spread.centers[i];
+    add(spread.distance_ratios[i], u.distance_ratio_sigmas[i]);
+  }
   const Eigen::Index gyro_at = 3 * (std::ssize(motion.tau) - 1);
   const Eigen::Index planes_at = change.rows() - 3 * std::ssize(u.others) - 2;
-  for (std::size_t i = 1; i < motion.tau.size(); ++i) {
-    const auto at = static_cast<Eigen::Index>(3 * (i - 1));
-    u.center_covariances[i] += change.block<3, 3>(at, at);
-    Eigen::VectorXd ratio = Eigen::VectorXd::Zero(change.rows());
-    ratio.segment<3>(at) = motion.normal;
-    ratio.segment<2>(planes_at) = -(tangents.transpose() * motion.tau[i]);
-    add(ratio.dot(change * ratio), u.distance_ratio_sigmas[i]);
-  }
   const Eigen::Index gyro = planes_at - gyro_at;
   if (u.bias_covariance && gyro > 0) *u.bias_covariance += change.block<3, 3>(gyro_at, gyro_at);
   if (u.time_offset_sigma_s && gyro > 3)

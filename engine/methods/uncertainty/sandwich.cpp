@@ -1,11 +1,11 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/methods/certainty/sandwich.h"
+#include "engine/methods/uncertainty/sandwich.h"
 
 #include "engine/geometry/decompositions.h"
-#include "engine/methods/certainty/shared_information.h"
 #include "engine/methods/common/window_checks.h"
 #include "engine/methods/plane/plane_weights.h"
+#include "engine/methods/uncertainty/shared_information.h"
 
 #include <algorithm>
 #include <cmath>

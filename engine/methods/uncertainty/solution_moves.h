@@ -3,8 +3,8 @@
 #pragma once
 
 // Displacements of a solution by errors of the gyroscope, the lens and the readout.
-#include "engine/methods/certainty/sandwich.h"
 #include "engine/methods/common/initialization.h"
+#include "engine/methods/uncertainty/sandwich.h"
 
 #include <optional>
 #include <span>
@@ -59,5 +59,11 @@ Eigen::MatrixXd joint_covariance(const Sandwich& sandwich,
 /// Adds a change of `Uncertainty::joint_covariance`, in the order of its rows, to the covariances
 /// of centers, bias, time offset and distances.
 void add_to_marginals(const PlaneMotion& motion, const Eigen::MatrixXd& change, Uncertainty& u);
+
+/// Returns the marginals of a covariance in the order of `Uncertainty::joint_covariance`; `u` has
+/// the other planes.
+NoiseSpread noise_spread(const PlaneMotion& motion,
+                         const Eigen::MatrixXd& covariance,
+                         const Uncertainty& u);
 
 }  // namespace gpo
