@@ -258,6 +258,7 @@ MethodRun run_method(Window window,
   }
   return run_from_both(std::move(window), rotations, [&](const Window& one) {
     Initialization result = run(one, sources, options, watch);
+    add_own_noise(one, sources, options, watch.stop, result);
     return result.ok ? with_uncertainty(options.method.row(), one, std::move(result)) : result;
   });
 }
@@ -267,6 +268,7 @@ void add_own_noise(const Window& window,
                    const InitializeOptions& options,
                    const std::stop_token& stop,
                    Initialization& result) {
+  if (result.own_noise) return;  // of two orientations
   const Watch watch{stop};
   const auto again = [&](const Window& w) { return run(w, sources, options, watch); };
   result.own_noise =

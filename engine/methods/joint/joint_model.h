@@ -23,7 +23,8 @@ struct Options {
   bool gyro_noise = false;
   std::optional<RowDelayPrior> row_delay = std::nullopt;  ///< nullopt: global shutter
   bool huber = true;
-  bool uncertainty = true;  ///< of the solution
+  /// False: a restart without a part of the tracks, whose solution has no uncertainty.
+  bool uncertainty = true;
   // Unknowns that are held contribute to the uncertainty only.
   bool lens_parameters = true;
   bool lens_residual = true;

@@ -66,15 +66,22 @@ inline Initialization successful(Initialization result) {
   return result;
 }
 
-/// Returns the assessed result of a method with its spread by regions.
-inline Initialization resampled_by(const char* key,
+/// Returns the result of a method with its uncertainty by regions, not judged.
+inline Initialization uncertain_by(const char* key,
                                    const Window& window,
                                    const MethodOptions& options = {}) {
   const Method& method = find_method(key);
   const auto run = [&](const Window& w) { return method.initialize(w, options, {}); };
   Initialization result = run(window);
   result.own_noise = own_noise(method, window, result, run, options, {});
-  return assessed(method, window, std::move(result));
+  return result.ok ? with_uncertainty(method, window, std::move(result)) : result;
+}
+
+/// Returns the same, judged.
+inline Initialization resampled_by(const char* key,
+                                   const Window& window,
+                                   const MethodOptions& options = {}) {
+  return assessed(find_method(key), window, uncertain_by(key, window, options));
 }
 
 inline double normal_error_deg(const Initialization& result, const Simulation& truth) {
