@@ -90,7 +90,7 @@ void add_method_commands(CLI::App& command, MethodArguments& arguments) {
       ->check(number_within(0.01, 1e5));
   command.add_flag("--method-resample",
                    arguments.resample,
-                   "Gives such a command ten more windows, each without a tenth of the tracks, for "
+                   "Gives such a command nine more windows, each without a region of the image, for "
                    "its own uncertainty instead of the window's");
   command
       .add_option("--result",

@@ -39,7 +39,7 @@ class MethodLog {
 struct MethodArguments {
   MethodSpecs specs;
   double timeout_s = 30;        ///< limit of a command per window
-  bool resample = false;        ///< ten more windows each, for a command's own uncertainty
+  bool resample = false;        ///< nine more windows each, for a command's own uncertainty
   bool allow_commands = false;  ///< also starts the commands of sessions
 };
 

@@ -5,9 +5,9 @@
 #include "engine/base/error.h"
 #include "engine/diagnosis/checks.h"
 #include "engine/diagnosis/not_finite.h"
-#include "engine/methods/uncertainty/uncertainty.h"
-#include "engine/methods/uncertainty/window_evidence.h"
+#include "engine/diagnosis/window_evidence.h"
 #include "engine/methods/common/window_checks.h"
+#include "engine/methods/uncertainty/uncertainty.h"
 
 #include <algorithm>
 #include <array>
@@ -25,7 +25,8 @@ namespace {
 std::vector<Finding> remarked(const Evidence& evidence, std::string_view key) {
   std::vector<Finding> findings;
   for (const Remark& remark : evidence.remarks)
-    if (remark.key == key) findings.push_back({.sentence = remark.sentence, .advice = remark.advice});
+    if (remark.key == key)
+      findings.push_back({.sentence = remark.sentence, .advice = remark.advice});
   return findings;
 }
 

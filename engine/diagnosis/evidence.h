@@ -32,7 +32,7 @@ struct Evidence {
   const Camera* camera = nullptr;
   bool camera_is_guess = false;
   double intrinsics_scale = 1;  ///< by which `camera` differs from the calibration
-  double pixel_aspect = 1;  ///< width of a pixel divided by its height, as the images state
+  double pixel_aspect = 1;      ///< width of a pixel divided by its height, as the images state
   std::string_view first_field = {};  ///< "top" or "bottom" if the video is interlaced
   const Gyroscope* gyroscope = nullptr;
   std::span<const Remark> remarks = {};

@@ -28,28 +28,13 @@ struct Stray {
   Vector2d place_px, motion_px;
 };
 
-/// Returns F of p_i^T F p_0 = 0; zero if the camera hardly moved.
-Eigen::Matrix3d fundamental(const Eigen::Matrix3d& K_inverse, const Pose& camera) {
-  if (camera.p_wc.norm() < kLeastTravel) return Eigen::Matrix3d::Zero();
-  const Eigen::Matrix3d R_cw = camera.R_wc.transpose();
-  return K_inverse.transpose() * skew(-(R_cw * camera.p_wc)) * R_cw * K_inverse;
-}
-
-/// Returns the first-order distance of a pair from the epipolar geometry [px].
-double sampson_px(const Eigen::Matrix3d& F, const Vector2d& p_0, const Vector2d& p_i) {
-  const Eigen::Vector3d line_i = F * p_0.homogeneous();
-  const Eigen::Vector3d line_0 = F.transpose() * p_i.homogeneous();
-  const double slopes = line_i.head<2>().squaredNorm() + line_0.head<2>().squaredNorm();
-  return std::abs(p_i.homogeneous().dot(line_i)) / std::sqrt(std::max(slopes, 1e-30));
-}
-
 std::vector<Stray> strays_of(const Window& window, const Initialization& result) {
   const Eigen::Matrix3d K_inverse = window.K.inverse();
   std::vector<int> seen(window.track_count()), off(window.track_count());
   std::vector<Vector2d> motion(window.track_count());
   for (int i = 1; i < window.frame_count(); ++i) {
-    const Eigen::Matrix3d F = fundamental(K_inverse, result.cameras[i]);
-    if (F.isZero(0)) continue;
+    if (result.cameras[i].p_wc.norm() < kLeastTravel) continue;
+    const Eigen::Matrix3d F = fundamental_matrix(K_inverse, result.cameras[i]);
     for (int j = 0; j < window.track_count(); ++j) {
       const Vector2d p_0 = window.points_px[0].col(j), p_i = window.points_px[i].col(j);
       if (!p_0.allFinite() || !p_i.allFinite() || !window.H_i1[i].allFinite()) continue;

@@ -70,7 +70,7 @@ Findings unstable_method(const Evidence& e) {
       !e.result->own_noise->unstable)
     return {};
   return {{.level = Level::weak,
-           .sentence = "without a ninth of the tracks the method mostly fails or finds another "
+           .sentence = "without one region of the image the method mostly fails or finds another "
                        "plane normal"}};
 }
 

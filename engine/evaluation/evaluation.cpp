@@ -4,9 +4,9 @@
 
 #include "engine/geometry/homography.h"
 #include "engine/geometry/statistics.h"
-#include "engine/methods/uncertainty/shared_information.h"
 #include "engine/methods/common/window_checks.h"
 #include "engine/methods/plane/plane_result.h"
+#include "engine/methods/uncertainty/information.h"
 
 #include <algorithm>
 #include <cmath>

@@ -51,7 +51,7 @@ NamedText parse_method_command(const std::string& text);
 
 struct CommandOptions {
   std::chrono::milliseconds time_limit{30'000};  ///< per window, including the start of the process
-  bool resampled = false;  ///< `Method::resampled`: ten more windows for its own uncertainty
+  bool resampled = false;  ///< `Method::resampled`: nine more windows for its own uncertainty
   /// Called for each line on a command's standard error, up to a limit per window, on the calling
   /// thread of the method.
   std::function<void(const std::string& name, const std::string& line)> on_line = {};

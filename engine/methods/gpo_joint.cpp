@@ -9,7 +9,7 @@
 #include "engine/methods/plane/plane_solver.h"
 #include "engine/methods/plane/rolling_shutter.h"
 #include "engine/methods/plane_fit.h"
-#include "engine/methods/uncertainty/bends.h"
+#include "engine/methods/uncertainty/bend.h"
 #include "engine/methods/uncertainty/uncertainty.h"
 
 #include <cmath>
@@ -230,6 +230,7 @@ Initialization restart_gpo_joint(const Window& given,
   PlaneMotion motion = motion_of(start);
   const RotationModel model = start.uncertainty ? start.uncertainty->rotations : window.rotations;
   if (model == RotationModel::bias) motion.bias_rad_s = *start.bias_rad_s;
+  motion.time_offset_s = start.time_offset_s.value_or(0);
   const RotationUnknowns rotations{model,
                                    model == RotationModel::bias && window.gyro->noise_density > 0};
   const FitTask of_all{window, options, sigma_px_of(window), watch};

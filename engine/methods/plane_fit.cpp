@@ -6,7 +6,7 @@
 #include "engine/methods/plane/linear_solutions.h"
 #include "engine/methods/plane/plane_weights.h"
 #include "engine/methods/plane/rolling_shutter.h"
-#include "engine/methods/uncertainty/solution_moves.h"
+#include "engine/methods/uncertainty/shares.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,9 +1,9 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/methods/uncertainty/solution_moves.h"
 #include "engine/methods/plane/plane_motion.h"
 #include "engine/methods/plane/plane_result.h"
 #include "engine/methods/plane/rolling_shutter.h"
+#include "engine/methods/uncertainty/shares.h"
 #include "engine/pipeline/method_defaults.h"
 #include "engine/pipeline/pipeline.h"
 

@@ -3,13 +3,13 @@
 #include "engine/pipeline/pipeline.h"
 
 #include "engine/base/error.h"
+#include "engine/diagnosis/growth.h"
+#include "engine/diagnosis/window_evidence.h"
 #include "engine/frontend/gyroscope_alignment.h"
 #include "engine/frontend/inliers.h"
 #include "engine/frontend/readout_compensation.h"
-#include "engine/methods/uncertainty/growth.h"
-#include "engine/methods/uncertainty/uncertainty.h"
-#include "engine/methods/uncertainty/window_evidence.h"
 #include "engine/methods/common/window_checks.h"
+#include "engine/methods/uncertainty/uncertainty.h"
 #include "engine/pipeline/method_defaults.h"
 
 #include <limits>
@@ -268,7 +268,7 @@ void add_own_noise(const Window& window,
                    const InitializeOptions& options,
                    const std::stop_token& stop,
                    Initialization& result) {
-  if (result.own_noise) return;  // of two orientations
+  if (result.own_noise) return;  // known since two orientations were compared
   const Watch watch{stop};
   const auto again = [&](const Window& w) { return run(w, sources, options, watch); };
   result.own_noise =

@@ -32,7 +32,7 @@ if [ ! -e "$libraries/libceres.so" ]; then fetch_packages; fi
 
 # The tests that include nothing but core: names of files whose includes, followed, stay in its folders, and so do
 # the sources of their headers.
-core=(base geometry window methods inertial truth evaluation)
+core=(base geometry window methods inertial truth evaluation diagnosis)
 core_tests() {
   python3 - "$here" "${core[@]}" <<'PYTHON'
 import pathlib, re, sys

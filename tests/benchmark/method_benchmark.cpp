@@ -1,7 +1,7 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/base/processor.h"
-#include "engine/methods/uncertainty/growth.h"
+#include "engine/diagnosis/growth.h"
 #include "engine/methods/initializers.h"
 #include "engine/methods/methods.h"
 #include "engine/methods/plane/linear_solutions.h"

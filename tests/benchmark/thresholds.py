@@ -17,7 +17,7 @@ WINDOWS = {"euroc-room": (0, 40, 5, 20), "chessboard-dark": (0, 280, 20, 20),
            "postcard": (0, 140, 20, 20), "cards-tracks": (1, 301, 50, 15),
            "phone-street": (0, 80, 20, 20)}
 TUNING = {"euroc-room", "chessboard-floor"}
-# engine/methods/uncertainty/window_evidence.cpp and .h
+# engine/diagnosis/window_evidence.cpp and .h
 VERDICT = {"kDegenerateRotationToNoise": 1.3, "kDegenerateSigma_deg": 10.0,
            "kDegenerateTranslation": 0.015, "kReadyTranslation": 0.06, "kWeakSigma_deg": 0.5}
 

@@ -2,10 +2,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/base/error.h"
 #include "engine/base/parallel.h"
+#include "engine/diagnosis/window_evidence.h"
 #include "engine/geometry/decompositions.h"
 #include "engine/inspection/inspector.h"
 #include "engine/inspection/studies/studies.h"
-#include "engine/methods/uncertainty/window_evidence.h"
 #include "engine/window/timestamps.h"
 
 #include <algorithm>

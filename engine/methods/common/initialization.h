@@ -35,7 +35,7 @@ struct NoiseSpread {
   Eigen::Matrix2d normal = Eigen::Matrix2d::Zero();  ///< along `normal_tangents` [rad^2]
   std::vector<Eigen::Matrix3d> centers = {};         ///< for p_wc, one per frame
   std::vector<double> distance_ratios = {};          ///< variances of d_i / d_1, one per frame
-  /// Half of the runs without a group of tracks fail or end in another minimum: no covariances.
+  /// Half of the runs without a region of the image fail or end in another minimum: no covariances.
   bool unstable = false;
 };
 
@@ -47,12 +47,13 @@ struct TypicalLensMoves {
   Eigen::MatrixXd row_delay_s = {};  ///< one row; none if it was no unknown
 };
 
-/// First-order uncertainty of a solution (engine/method.md, eq. 13 to 15) in the gauge of an
-/// initialization (world = reference camera, d = 1), the unknowns of `rotations` marginalized.
-/// Estimated from the residuals, with two-way clustering: errors of a track in all its frames may
-/// be correlated, and so may errors of all tracks in a frame. If the method takes uncertain
-/// rotations as known, their uncertainty given the tracks is propagated. The lens has the
-/// uncertainty of its calibration. Without one it is taken as exact until `add_typical_lens`.
+/// Uncertainty of a solution (engine/method.md, eq. 13 to 15) in the gauge of an initialization
+/// (world = reference camera, d = 1), the unknowns of `rotations` marginalized. Its shape is that
+/// of first-order covariances with two-way clustering: errors of a track in all its frames may be
+/// correlated, and so may errors of all tracks in a frame. Its size is at least that of runs
+/// without each region of the image (`with_size`). If the method takes uncertain rotations as
+/// known, their uncertainty given the tracks is propagated. The lens has the uncertainty of its
+/// calibration. Without one it is taken as exact until `add_typical_lens`.
 struct Uncertainty {
   /// True: the uncertainty of the method's own estimates. False: that of the most accurate
   /// estimates from the window's tracks, at the method's solution.
@@ -62,9 +63,10 @@ struct Uncertainty {
   RotationModel rotations = RotationModel::known;
   Eigen::Matrix3d normal_covariance = Eigen::Matrix3d::Zero();  ///< [rad^2], rank 2
   double normal_sigma_deg = 0;                                  ///< root of its trace
-  /// Contribution of a curved surface: variation of the normal over the tracks, if significant.
+  /// Contribution of a curved surface, if it exceeds that of the regions. Before `with_size` the
+  /// variation of the normal over the tracks, if significant.
   std::optional<double> bend_sigma_deg;
-  /// Contribution of errors that neighboring tracks share, if significant.
+  /// Contribution of errors that neighboring tracks share, if regions of the image disagree.
   std::optional<double> neighbors_sigma_deg;
   /// Contribution of the gyroscope's clock, if the method takes it as exact and the tracks do not.
   std::optional<double> clock_sigma_deg;
@@ -257,8 +259,8 @@ struct Initialization {
   std::optional<Eigen::Vector3d> bias_rad_s;  ///< gyroscope bias, if the method estimates it
   std::optional<double> time_offset_s;  ///< gyroscope clock = camera clock + offset, if estimated
   std::optional<double> row_delay_s;    ///< between two rows of an image, if estimated
-  /// Covariances of the method's own estimates, from runs without groups of tracks; nullopt if not
-  /// computed.
+  /// Covariances of the method's own estimates, from runs without each region of the image; nullopt
+  /// if not computed.
   std::optional<NoiseSpread> own_noise;
   std::optional<Uncertainty> uncertainty;  ///< if ok and determined
   std::optional<Verdict> verdict;          ///< also for rejected windows

@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/methods/joint/joint_uncertainty.h"
 
-#include "engine/methods/uncertainty/sandwich.h"
-#include "engine/methods/uncertainty/solution_moves.h"
+#include "engine/methods/uncertainty/information.h"
+#include "engine/methods/uncertainty/shares.h"
 
 #include <algorithm>
 #include <cmath>

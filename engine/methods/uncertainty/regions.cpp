@@ -5,7 +5,7 @@
 #include "engine/base/parallel.h"
 #include "engine/methods/plane/plane_motion.h"
 #include "engine/methods/plane/rolling_shutter.h"
-#include "engine/methods/uncertainty/sandwich.h"
+#include "engine/methods/uncertainty/information.h"
 
 #include <algorithm>
 #include <cmath>

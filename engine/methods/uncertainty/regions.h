@@ -33,9 +33,9 @@ std::optional<NoiseSpread> spread_by_regions(
 /// and the bend of the surface (`Uncertainty::bend_sigma_deg`), with three quarters of its shape
 /// by the regions. Centers, further planes, bias, clock, row delay and rotations keep their shapes
 /// and widen as the normal does, up to their priors; centers at least as the regions tell.
-/// Contributions that no choice of tracks changes (gyroscope, lens, readout) stay. So does the joint
-/// covariance of a method with an own uncertainty: gravity and scale weigh the poses by it, and
-/// with a wider one accelerations would move them off the tracks. That of the others keeps its
+/// Contributions that no choice of tracks changes (gyroscope, lens, readout) stay. So does the
+/// joint covariance of a method with an own uncertainty: gravity and scale weigh the poses by it,
+/// and with a wider one accelerations would move them off the tracks. That of the others keeps its
 /// correlations.
 Uncertainty with_size(Uncertainty u,
                       const Window& window,

@@ -3,10 +3,9 @@
 #include "engine/methods/uncertainty/uncertainty.h"
 
 #include "engine/methods/plane/rolling_shutter.h"
-#include "engine/methods/uncertainty/bends.h"
-#include "engine/methods/uncertainty/sandwich.h"
-#include "engine/methods/uncertainty/shared_information.h"
-#include "engine/methods/uncertainty/solution_moves.h"
+#include "engine/methods/uncertainty/bend.h"
+#include "engine/methods/uncertainty/information.h"
+#include "engine/methods/uncertainty/shares.h"
 
 #include <algorithm>
 #include <cmath>
@@ -258,7 +257,8 @@ std::optional<Uncertainty> uncertainty_of(const SolvedPlanes& solved,
   }
   add_gyro(bread.layout, spread.shared, result);
   // Errors of a held gyroscope look like a bend, and have their own share.
-  if (errors == Errors::all && !holds_gyro) result.bend_sigma_deg = bend_sigma_deg(solved, sigma_px);
+  if (errors == Errors::all && !holds_gyro)
+    result.bend_sigma_deg = bend_sigma_deg(solved, sigma_px);
   add_bounds(solved, *linearized, result);
   return result;
 }

@@ -124,8 +124,7 @@ TEST(ImplausibleIntrinsics, NameTheSizeThatTheyWereMadeFor) {
     const auto found = found_in(camera);
     ASSERT_EQ(found.size(), 1U) << scale;
     EXPECT_THAT(found[0].sentence, HasSubstr("for images of about 8")) << found[0].sentence;
-    if (scale != 0.9)
-      EXPECT_THAT(found[0].advice, HasSubstr(fmt::format("by {:.4g} (", scale)));
+    if (scale != 0.9) EXPECT_THAT(found[0].advice, HasSubstr(fmt::format("by {:.4g} (", scale)));
   }
 }
 

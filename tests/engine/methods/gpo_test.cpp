@@ -1,7 +1,7 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/geometry/statistics.h"
-#include "engine/methods/uncertainty/shared_information.h"
+#include "engine/methods/uncertainty/information.h"
 #include "engine/methods/uncertainty/uncertainty.h"
 #include "engine/methods/initializers.h"
 #include "engine/methods/methods.h"

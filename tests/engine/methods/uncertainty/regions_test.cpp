@@ -5,9 +5,9 @@
 #include "engine/diagnosis/diagnosis.h"
 #include "engine/geometry/homography.h"
 #include "engine/geometry/statistics.h"
-#include "engine/methods/uncertainty/solution_moves.h"
 #include "engine/methods/methods.h"
 #include "engine/methods/plane/rolling_shutter.h"
+#include "engine/methods/uncertainty/shares.h"
 #include "tests/engine/methods/method_cases.h"
 #include "tests/engine/simulated_window.h"
 
@@ -118,7 +118,7 @@ TEST(OwnUncertainty, MethodThatFailsWithoutAnyGroupOfTracksIsNotReady) {
   ASSERT_TRUE(doubtful.ok);
   EXPECT_EQ(doubtful.verdict->readiness, Readiness::weak);
   EXPECT_EQ(doubtful.verdict->reason,
-            "without a ninth of the tracks the method mostly fails or finds another plane normal");
+            "without one region of the image the method mostly fails or finds another plane normal");
   EXPECT_FALSE(doubtful.uncertainty->own);
 }
 

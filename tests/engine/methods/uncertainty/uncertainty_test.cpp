@@ -3,9 +3,8 @@
 #include "engine/methods/uncertainty/uncertainty.h"
 
 #include "engine/diagnosis/diagnosis.h"
-#include "engine/methods/uncertainty/sandwich.h"
-#include "engine/methods/uncertainty/shared_information.h"
 #include "engine/methods/methods.h"
+#include "engine/methods/uncertainty/information.h"
 #include "engine/window/window.h"
 #include "tests/engine/methods/method_cases.h"
 #include "tests/engine/simulated_window.h"

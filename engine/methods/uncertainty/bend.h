@@ -4,7 +4,7 @@
 
 #include "engine/methods/common/initialization.h"
 #include "engine/methods/plane/plane_motion.h"
-#include "engine/methods/uncertainty/sandwich.h"
+#include "engine/methods/uncertainty/information.h"
 
 #include <optional>
 

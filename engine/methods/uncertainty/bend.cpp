@@ -1,11 +1,10 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/methods/uncertainty/bends.h"
+#include "engine/methods/uncertainty/bend.h"
 
 #include "engine/geometry/decompositions.h"
 #include "engine/methods/plane/plane_weights.h"
-#include "engine/methods/uncertainty/sandwich.h"
-#include "engine/methods/uncertainty/shared_information.h"
+#include "engine/methods/uncertainty/information.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,6 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/methods/uncertainty/window_evidence.h"
+#include "engine/diagnosis/window_evidence.h"
 
 #include "engine/geometry/homography.h"
 #include "engine/methods/common/window_checks.h"
@@ -19,7 +19,7 @@ using Eigen::Matrix3d;
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-constexpr int kLeastTracks = 8;
+constexpr int kLeastTracksOfScene = 8;
 constexpr double kOutlier = 2;  // lambda_3: upper limit of an error per constraint
 
 /// Torr 1998: sum of bounded squared errors + lambda_1 d n + lambda_2 k, for n pairs of points (r =
@@ -45,14 +45,6 @@ class Gric {
   double errors_ = 0;
 };
 
-/// Returns the first-order distance of a pair from the epipolar geometry x2^T F x1 = 0 [px].
-double sampson_px(const Matrix3d& F, const Vector2d& x1, const Vector2d& x2) {
-  const Vector3d line_2 = F * x1.homogeneous();
-  const Vector3d line_1 = F.transpose() * x2.homogeneous();
-  return std::abs(x2.homogeneous().dot(line_2)) /
-         std::sqrt(line_2.head<2>().squaredNorm() + line_1.head<2>().squaredNorm());
-}
-
 /// Returns the distance of a pair from a homography with errors in both points, from the transfer
 /// errors in both directions [px].
 double symmetric_px(const Matrix3d& H,
@@ -65,6 +57,18 @@ double symmetric_px(const Matrix3d& H,
 }
 
 }  // namespace
+
+Matrix3d fundamental_matrix(const Matrix3d& K_inverse, const Pose& camera) {
+  const Vector3d t = camera.R_wc.transpose() * camera.p_wc;
+  return K_inverse.transpose() * skew(t) * camera.R_wc.transpose() * K_inverse;
+}
+
+double sampson_px(const Matrix3d& F, const Vector2d& p_0, const Vector2d& p_i) {
+  const Vector3d line_i = F * p_0.homogeneous();
+  const Vector3d line_0 = F.transpose() * p_i.homogeneous();
+  const double slopes = line_i.head<2>().squaredNorm() + line_0.head<2>().squaredNorm();
+  return std::abs(p_i.homogeneous().dot(line_i)) / std::sqrt(std::max(slopes, 1e-30));
+}
 
 void WindowEvidence::add(const FrameErrors& errors) {
   ++frames_;
@@ -122,9 +126,7 @@ std::optional<SceneCriterion> scene_criterion(const Window& window,
   const auto frame = farthest - cameras.begin();
   const Pose& camera = *farthest;
   if (!(noise_px > 0) || !(camera.p_wc.norm() > 0)) return std::nullopt;
-  const Vector3d t = camera.R_wc.transpose() * camera.p_wc;
-  const Matrix3d K_inverse = window.K.inverse();
-  const Matrix3d F = K_inverse.transpose() * skew(t) * camera.R_wc.transpose() * K_inverse;
+  const Matrix3d F = fundamental_matrix(window.K.inverse(), camera);
   Gric planes(2, noise_px), free_points(3, noise_px);
   int tracks = 0;
   for (int j = 0; j < window.track_count(); ++j) {
@@ -140,7 +142,7 @@ std::optional<SceneCriterion> scene_criterion(const Window& window,
     planes.add(nearest_px);
     free_points.add(sampson_px(F, x1, x2));
   }
-  if (tracks < kLeastTracks) return std::nullopt;
+  if (tracks < kLeastTracksOfScene) return std::nullopt;
   return SceneCriterion{planes.value(8 * static_cast<int>(window.planes.size())),
                         free_points.value(7)};
 }

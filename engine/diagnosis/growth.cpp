@@ -1,14 +1,14 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/methods/uncertainty/growth.h"
+#include "engine/diagnosis/growth.h"
 
+#include "engine/diagnosis/window_evidence.h"
 #include "engine/geometry/decompositions.h"
 #include "engine/methods/common/window_checks.h"
 #include "engine/methods/plane/linear_solutions.h"
 #include "engine/methods/plane/plane_motion.h"
-#include "engine/methods/uncertainty/shared_information.h"
+#include "engine/methods/uncertainty/information.h"
 #include "engine/methods/uncertainty/uncertainty.h"
-#include "engine/methods/uncertainty/window_evidence.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,9 +1,9 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/methods/uncertainty/solution_moves.h"
+#include "engine/methods/uncertainty/shares.h"
 
 #include "engine/methods/plane/plane_weights.h"
-#include "engine/methods/uncertainty/shared_information.h"
+#include "engine/methods/uncertainty/information.h"
 
 #include <algorithm>
 #include <cmath>

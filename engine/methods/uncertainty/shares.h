@@ -4,7 +4,7 @@
 
 // Displacements of a solution by errors of the gyroscope, the lens and the readout.
 #include "engine/methods/common/initialization.h"
-#include "engine/methods/uncertainty/sandwich.h"
+#include "engine/methods/uncertainty/information.h"
 
 #include <optional>
 #include <span>

@@ -37,6 +37,12 @@ Verdict numbers_of(const WindowEvidence& evidence,
 /// Returns the same for a result that is ok, with the scene; the uncertainty is the result's.
 Verdict window_numbers(const Window& window, const Initialization& result, Lens lens);
 
+/// Returns F with p_i^T F p_0 = 0 for pixels of the reference camera and of `camera`, up to scale.
+Eigen::Matrix3d fundamental_matrix(const Eigen::Matrix3d& K_inverse, const Pose& camera);
+
+/// Returns the first-order distance of a pair from the epipolar geometry p_i^T F p_0 = 0 [px].
+double sampson_px(const Eigen::Matrix3d& F, const Eigen::Vector2d& p_0, const Eigen::Vector2d& p_i);
+
 /// Returns the kind of scene; unknown if inliers are not chosen by planes.
 SceneKind scene_of(const Window& window);
 

@@ -1,6 +1,6 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/methods/uncertainty/sandwich.h"
+#include "engine/methods/uncertainty/information.h"
 
 #include <gtest/gtest.h>
 

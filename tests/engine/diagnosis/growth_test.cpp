@@ -1,8 +1,9 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
+#include "engine/diagnosis/growth.h"
+
 #include "engine/diagnosis/diagnosis.h"
-#include "engine/methods/uncertainty/growth.h"
-#include "engine/methods/uncertainty/window_evidence.h"
+#include "engine/diagnosis/window_evidence.h"
 #include "engine/methods/initializers.h"
 #include "engine/methods/methods.h"
 #include "tests/engine/methods/method_cases.h"
