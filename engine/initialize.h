@@ -4,12 +4,12 @@
 
 #include "engine/base/eigen_layout.h"
 #include "engine/base/error.h"
-#include "engine/frontend/rotations.h"
 #include "engine/geometry/camera.h"
 #include "engine/inertial/inertial_alignment.h"
 #include "engine/methods/common/method_options.h"
 #include "engine/methods/methods.h"
 #include "engine/result.h"
+#include "engine/rotations/rotations.h"
 #include "engine/window/gyroscope.h"
 #include "engine/window/window.h"
 

@@ -4,9 +4,9 @@
 
 #include "engine/base/eigen_layout.h"
 #include "engine/diagnosis/finding.h"
-#include "engine/frontend/rotations.h"
 #include "engine/inertial/inertial_alignment.h"
 #include "engine/methods/common/initialization.h"
+#include "engine/rotations/rotations.h"
 #include "engine/window/window.h"
 
 #include <cstdint>

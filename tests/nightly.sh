@@ -173,7 +173,7 @@ arm64() {
   local folder=build/nightly/arm64
   tests/arm64/run.sh "$folder" || return 1
   mkdir -p "$folder/include" && ln -sfn /usr/include/opengv "$folder/include/opengv"
-  find engine/frontend engine/pipeline -name '*.cpp' -print0 |
+  find engine/tracking engine/planes engine/rotations engine/pipeline -name '*.cpp' -print0 |
     xargs -0 -P "$JOBS" -n 1 aarch64-linux-gnu-g++ -std=c++20 -O2 -Wall -Wextra -Werror -Wno-psabi --sysroot="$folder/sysroot" \
       -I. -isystem "$folder/sysroot/usr/include/eigen3" -isystem /usr/include/opencv4 -isystem "$folder/include" -S -o /dev/null
 }

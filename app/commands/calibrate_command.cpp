@@ -6,9 +6,9 @@
 #include "engine/calibration/calibration_report.h"
 #include "engine/files/output_file.h"
 #include "engine/files/text_file.h"
-#include "engine/frontend/gyroscope_check.h"
 #include "engine/recording/board/board.h"
 #include "engine/recording/companions/companion_files.h"
+#include "engine/rotations/gyroscope_check.h"
 #include "ui/views/charts/charts.h"
 
 #include <cstdio>

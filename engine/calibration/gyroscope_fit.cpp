@@ -3,10 +3,10 @@
 #include "engine/calibration/gyroscope_fit.h"
 
 #include "engine/base/error.h"
-#include "engine/frontend/rotations.h"
 #include "engine/geometry/decompositions.h"
 #include "engine/geometry/pose.h"
 #include "engine/geometry/statistics.h"
+#include "engine/rotations/rotations.h"
 
 #include <algorithm>
 #include <cmath>

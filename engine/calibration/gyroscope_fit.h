@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "engine/frontend/gyroscope_alignment.h"
 #include "engine/geometry/camera.h"
+#include "engine/rotations/gyroscope_alignment.h"
 
 #include <optional>
 #include <string>

@@ -4,11 +4,11 @@
 
 #include "engine/base/error.h"
 #include "engine/files/refuse.h"
-#include "engine/frontend/readout_compensation.h"
 #include "engine/inspection/rolling_cameras.h"
 #include "engine/methods/plane/rolling_shutter.h"
 #include "engine/methods/recording_method.h"
 #include "engine/pipeline/method_defaults.h"
+#include "engine/planes/readout_compensation.h"
 #include "engine/recording/images/frame_faults.h"
 
 #include <algorithm>

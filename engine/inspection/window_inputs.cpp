@@ -1,11 +1,11 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/files/refuse.h"
-#include "engine/frontend/tracking/tracker.h"
 #include "engine/inspection/inspector.h"
 #include "engine/methods/recording_method.h"
 #include "engine/recording/board/board.h"
 #include "engine/recording/images/frame_faults.h"
+#include "engine/tracking/tracker.h"
 
 #include <algorithm>
 

@@ -2,9 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "engine/frontend/inliers.h"
 #include "engine/geometry/camera.h"
 #include "engine/live.h"
+#include "engine/planes/inliers.h"
 
 #include <cstdint>
 #include <memory>

@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "engine/frontend/inliers.h"
 #include "engine/initialize.h"
+#include "engine/planes/inliers.h"
 
 namespace gpo {
 

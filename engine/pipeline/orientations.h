@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "engine/frontend/rotations.h"
 #include "engine/methods/common/initialization.h"
+#include "engine/rotations/rotations.h"
 #include "engine/window/window.h"
 
 #include <functional>

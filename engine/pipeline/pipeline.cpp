@@ -5,12 +5,12 @@
 #include "engine/base/error.h"
 #include "engine/diagnosis/growth.h"
 #include "engine/diagnosis/window_evidence.h"
-#include "engine/frontend/gyroscope_alignment.h"
-#include "engine/frontend/inliers.h"
-#include "engine/frontend/readout_compensation.h"
 #include "engine/methods/common/window_checks.h"
 #include "engine/methods/uncertainty/uncertainty.h"
 #include "engine/pipeline/method_defaults.h"
+#include "engine/planes/inliers.h"
+#include "engine/planes/readout_compensation.h"
+#include "engine/rotations/gyroscope_alignment.h"
 
 #include <limits>
 #include <utility>

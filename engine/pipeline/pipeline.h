@@ -3,14 +3,14 @@
 #pragma once
 
 #include "engine/diagnosis/diagnosis.h"
-#include "engine/frontend/gyroscope_check.h"
-#include "engine/frontend/inliers.h"
-#include "engine/frontend/rotations.h"
 #include "engine/inertial/inertial_alignment.h"
 #include "engine/initialize.h"
 #include "engine/methods/common/initialization.h"
 #include "engine/methods/common/method_options.h"
 #include "engine/pipeline/orientations.h"
+#include "engine/planes/inliers.h"
+#include "engine/rotations/gyroscope_check.h"
+#include "engine/rotations/rotations.h"
 #include "engine/window/tracks.h"
 #include "engine/window/window.h"
 

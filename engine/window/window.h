@@ -87,7 +87,7 @@ struct Window {
   std::vector<Eigen::VectorXd> rows = {};
   int image_rows = 0;  ///< number of rows of the recorded image, or columns if read; 0: unknown
   /// Columns of tracks that do not move in the image although the others predict it, ascending.
-  /// They are left out: their points are NaN (`static_tracks`, engine/frontend/inliers.h).
+  /// They are left out: their points are NaN (`static_tracks`, engine/planes/inliers.h).
   std::vector<int> static_tracks = {};
   std::vector<std::vector<bool>> inlier;  ///< one per frame and track: observed, agrees with H_i1
   std::vector<Eigen::Matrix3d> H_i1;      ///< p_i ~ H_i1 p_1 by RANSAC [px]; H_11 = I

@@ -203,7 +203,7 @@ TEST(Architecture, FunctionsAreShort) {
     if (longest_function(lines) > kMostLinesOfFunction) long_functions.insert(file);
   // Loops that the compiler must optimize as a whole.
   EXPECT_THAT(long_functions,
-              testing::ElementsAre("engine/frontend/tracking/patch_sums.cpp",
+              testing::ElementsAre("engine/tracking/patch_sums.cpp",
                                    "engine/methods/plane/plane_kernel.cpp"));
 }
 

@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tests/engine/simulated_room.h"
 
-#include "engine/frontend/inliers.h"
 #include "engine/geometry/camera.h"
+#include "engine/planes/inliers.h"
 
 #include <random>
 

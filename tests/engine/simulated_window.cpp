@@ -2,9 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tests/engine/simulated_window.h"
 
-#include "engine/frontend/inliers.h"
-#include "engine/frontend/rotations.h"
 #include "engine/geometry/homography.h"
+#include "engine/planes/inliers.h"
+#include "engine/rotations/rotations.h"
 #include "engine/window/gyroscope.h"
 #include "engine/window/tracks.h"
 

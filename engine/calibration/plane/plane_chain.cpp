@@ -3,8 +3,8 @@
 #include "engine/base/parallel.h"
 #include "engine/base/stop.h"
 #include "engine/calibration/plane/plane_lens.h"
-#include "engine/frontend/inliers.h"
 #include "engine/geometry/homography.h"
+#include "engine/planes/inliers.h"
 
 #include <algorithm>
 #include <iterator>

@@ -3,9 +3,9 @@
 #include "engine/calibration/plane/plane_lens.h"
 
 #include "engine/base/error.h"
-#include "engine/frontend/rotations.h"
 #include "engine/geometry/pose.h"
 #include "engine/geometry/statistics.h"
+#include "engine/rotations/rotations.h"
 
 #include <algorithm>
 #include <cmath>

@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "engine/frontend/tracking/tracker.h"
 #include "engine/recording/frame_cache.h"
+#include "engine/tracking/tracker.h"
 #include "engine/window/gyroscope.h"
 
 #include <cstdint>

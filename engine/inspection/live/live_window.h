@@ -2,9 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "engine/frontend/tracking/tracker.h"
 #include "engine/inspection/inspection.h"
 #include "engine/recording/live/live_recording.h"
+#include "engine/tracking/tracker.h"
 
 #include <cstddef>
 #include <cstdint>

@@ -2,9 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "engine/frontend/tracking/tracking.h"
 #include "engine/initialize.h"
 #include "engine/recording/recording.h"
+#include "engine/tracking/tracking.h"
 #include "engine/window/tracks.h"
 
 #include <span>

@@ -1,12 +1,11 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/base/error.h"
-#include "engine/frontend/inliers.h"
 #include "engine/geometry/homography.h"
 #include "engine/inspection/rolling_cameras.h"
 #include "engine/inspection/studies/studies.h"
 #include "engine/pipeline/method_defaults.h"
-#include "engine/pipeline/method_defaults.h"
+#include "engine/planes/inliers.h"
 
 #include <algorithm>
 #include <array>

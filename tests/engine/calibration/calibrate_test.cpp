@@ -6,9 +6,9 @@
 #include "engine/calibration/residual_structure.h"
 #include "engine/recording/companions/companion_files.h"
 #include "tests/engine/calibration/phone_and_board.h"
-#include "tests/engine/frontend/texture.h"
 #include "tests/engine/recording/board/rendered_board.h"
 #include "tests/engine/test_folder.h"
+#include "tests/engine/tracking/texture.h"
 
 #include <limits>
 #include <memory>

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/geometry/homography.h"
 
-#include "engine/frontend/inliers.h"
+#include "engine/planes/inliers.h"
 #include "tests/engine/largest.h"
 #include "tests/engine/simulated_window.h"
 

@@ -1,8 +1,8 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/frontend/inliers.h"
 #include "engine/methods/plane/linear_solutions.h"
 #include "engine/methods/plane/rolling_shutter.h"
+#include "engine/planes/inliers.h"
 #include "tests/engine/simulated_window.h"
 
 #include <gtest/gtest.h>

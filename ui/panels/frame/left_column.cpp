@@ -1,8 +1,8 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
 // The left column: settings above, results below.
-#include "engine/frontend/inliers.h"
 #include "engine/inspection/report/report.h"
+#include "engine/planes/inliers.h"
 #include "ui/context/imgui_versions.h"
 #include "ui/panels/panels.h"
 

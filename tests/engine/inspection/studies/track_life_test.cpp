@@ -1,10 +1,10 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/frontend/inliers.h"
 #include "engine/geometry/statistics.h"
 #include "engine/inspection/report/report.h"
 #include "engine/inspection/studies/studies.h"
 #include "engine/methods/common/window_checks.h"
+#include "engine/planes/inliers.h"
 #include "engine/recording/layouts/open_recording.h"
 #include "tests/engine/simulated_window.h"
 #include "tests/engine/test_folder.h"

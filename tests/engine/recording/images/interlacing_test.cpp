@@ -4,9 +4,9 @@
 #include "engine/recording/images/interlacing.h"
 
 #include "engine/recording/images/images.h"
-#include "tests/engine/frontend/texture.h"
 #include "tests/engine/recording/images/made_video.h"
 #include "tests/engine/test_folder.h"
+#include "tests/engine/tracking/texture.h"
 
 #include <gtest/gtest.h>
 #include <opencv2/imgproc.hpp>
