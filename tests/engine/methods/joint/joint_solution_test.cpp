@@ -321,3 +321,36 @@ TEST(SmoothPath, FollowsTremor) {
 
 }  // namespace
 }  // namespace gpo::test
+/// A roll by more than half a turn, about an axis that the camera also moves along.
+TEST(SmoothPath, FollowsRotationsBeyondHalfATurn) {
+  const VectorXd t = VectorXd::LinSpaced(40, 0, 39 / 30.0);
+  const Eigen::Vector3d rate_rad_s(0.3, -0.2, 3.6);
+  PlaneMotion motion;
+  for (const double seconds : t) {
+    motion.R_wc.push_back(so3_exp(seconds * rate_rad_s));
+    motion.tau.emplace_back(0.1 * seconds * Eigen::Vector3d::UnitZ());
+  }
+  for (const double noise : {0.0, 1e-4})
+    for (const Velocity& velocity : smooth_velocities(path_times(t), motion, {noise, noise})) {
+      EXPECT_LT((velocity.rotation_rad_s - rate_rad_s).norm(), 1e-6);
+      EXPECT_LT(velocity.rotation_rad_s2.norm(), 1e-4);
+    }
+}
+
+/// Rates that change their axis and size: the error is of second order in the time between frames.
+TEST(SmoothPath, FollowsRotationsAboutChangingAxes) {
+  const VectorXd t = VectorXd::LinSpaced(40, 0, 39 / 30.0);
+  const auto rotation = [](double seconds) {
+    return Eigen::Matrix3d(so3_exp({0, std::sin(3 * seconds), 0}) * so3_exp({0, 0, 2 * seconds}));
+  };
+  PlaneMotion motion;
+  for (const double seconds : t) motion.R_wc.push_back(rotation(seconds));
+  motion.tau.resize(motion.R_wc.size(), Eigen::Vector3d::Zero());
+  const auto velocities = smooth_velocities(path_times(t), motion, {});
+  for (int i = 5; i < 35; ++i) {
+    constexpr double kStep_s = 1e-5;
+    const Eigen::Matrix3d step = rotation(t(i) - kStep_s).transpose() * rotation(t(i) + kStep_s);
+    EXPECT_LT((velocities[i].rotation_rad_s - so3_log(step) / (2 * kStep_s)).norm(), 0.005) << i;
+  }
+}
+
