@@ -178,6 +178,11 @@ void take(const joint::Solution& joint, const Window& window, Fit& fit) {
 }
 
 /// Returns the result for the window corrected for its own `row_delay`, whose standard deviation
+void set_time_offset(const Window& window, double correction_s, Initialization& result) {
+  result.time_offset_correction_s = correction_s;
+  result.time_offset_s = window.gyro->time_offset_s + correction_s;
+}
+
 /// adds to all uncertainties.
 Initialization initialize_at_row_delay(const Window& window,
                                        const MethodOptions& options,
@@ -250,7 +255,7 @@ Initialization initialize_gpo_joint(const Window& window,
   set_plane_uncertainties(result);
   if (window.rotations == RotationModel::bias) result.bias_rad_s = bias_rad_s;
   if (gyro_unknowns(window, fit.rotations.model) > 3)
-    result.time_offset_s = fit.solution.motion.time_offset_s;
+    set_time_offset(window, fit.solution.motion.time_offset_correction_s, result);
   if (fit.row_delay_s != 0) result.row_delay_s = fit.row_delay_s;
   if (joint && joint->other) result.other_minimum = solution_of(facing(fit.window, *joint->other));
   return result;

@@ -289,6 +289,8 @@ void add_sensors(const Initialization& result, ordered_json& json) {
   if (result.bias_rad_s) json["bias_rad_s"] = vector_json(*result.bias_rad_s);
   const Uncertainty u = result.uncertainty.value_or(Uncertainty{});
   if (result.time_offset_s) json["time_offset_s"] = *result.time_offset_s;
+  if (result.time_offset_correction_s)
+    json["time_offset_correction_s"] = *result.time_offset_correction_s;
   if (u.time_offset_sigma_s) json["time_offset_sigma_s"] = *u.time_offset_sigma_s;
   if (result.row_delay_s) json["row_delay_s"] = *result.row_delay_s;
   if (result.row_delay_s && u.row_delay_sigma_s) json["row_delay_sigma_s"] = *u.row_delay_sigma_s;
