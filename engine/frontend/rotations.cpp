@@ -262,7 +262,7 @@ GyroBias fit_gyro_bias(const Gyroscope& given,
     Matrix3d JtJ = prior * Matrix3d::Identity();
     Vector3d Jtr = prior * (bias - given.bias_rad_s);
     for (std::size_t i = 0; i < J.size(); ++i) {
-      const double huber = 1 / std::max(residuals[i].norm() / sigma_rad, 1.0);
+      const double huber = huber_weight(residuals[i].norm(), sigma_rad);
       const double weight = huber / (sigma_rad * sigma_rad * static_cast<double>(residuals.size()));
       JtJ += weight * J[i].transpose() * J[i];
       Jtr += weight * J[i].transpose() * residuals[i];

@@ -198,9 +198,7 @@ void Model::predict_group(const State& state,
     }
     const Vector2d latent = (tracks_[j].reference_px + state.shift_px.col(j)).cwiseProduct(per_px);
     p.transfer = transfer_on_plane(at, Vector3d(latent.x(), latent.y(), 1));
-    const Eigen::Matrix<double, 3, 2> A =
-        at.R_cw.leftCols<2>() - at.tau_c * at.normal.head<2>().transpose();
-    p.d_latent.noalias() = p.transfer.d_y * (A * per_px.asDiagonal());
+    p.d_latent = p.transfer.d_reference(at);
     p.r = p.transfer.pixel - observed;
     if (!has_lens) continue;
     // At the predicted pixel: the noise of the observed one is correlated with the error.
