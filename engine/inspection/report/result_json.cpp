@@ -294,6 +294,10 @@ void add_sensors(const Initialization& result, ordered_json& json) {
   if (u.time_offset_sigma_s) json["time_offset_sigma_s"] = *u.time_offset_sigma_s;
   if (result.row_delay_s) json["row_delay_s"] = *result.row_delay_s;
   if (result.row_delay_s && u.row_delay_sigma_s) json["row_delay_sigma_s"] = *u.row_delay_sigma_s;
+  if (const auto& lens = result.lens_residual)
+    json["lens_residual"] = {{"corner_px", lens->corner_px},
+                             {"x_px", vector_json(lens->coefficients_px.col(0))},
+                             {"y_px", vector_json(lens->coefficients_px.col(1))}};
 }
 
 /// Adds decompositions, a refused solution and dropped tracks, if there are any.

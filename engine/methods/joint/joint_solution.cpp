@@ -224,6 +224,7 @@ std::optional<Solution> solve(const Window& window,
                     .scales = at.scales,
                     .row_delay_s = at.state.row_delay_s,
                     .uncertainty = {}};
+  if (at.scales.lens_px > 0) solution.lens_residual = whole.lens_residual(at.state);
   solution.solver.termination = at.last_step_sigmas < kNearlySettledSigmas
                                     ? Termination::convergence
                                     : Termination::no_convergence;
