@@ -132,7 +132,10 @@ std::string first_not_finite(const Initialization& result) {
   search.look("reprojection_rms_px", result.reprojection_rms_px);
   search.look("bias_rad_s", result.bias_rad_s);
   search.look("time_offset_s", result.time_offset_s);
+  search.look("time_offset_correction_s", result.time_offset_correction_s);
   search.look("row_delay_s", result.row_delay_s);
+  if (result.lens_residual)
+    search.look("lens_residual.coefficients_px", result.lens_residual->coefficients_px);
   search.look("own_noise", result.own_noise);
   search.look("uncertainty", result.uncertainty);
   search.look("verdict", result.verdict);

@@ -15,10 +15,11 @@ struct Resection {
   double median_px;  ///< median reprojection error [px]
 };
 
-/// Returns the global minimum of SQPnP's algebraic cost (Terzakis & Lourakis, "A consistently fast
-/// and globally optimal solution to the perspective-n-point problem", ECCV 2020), also for coplanar
-/// points. `seen` are normalized coordinates K^-1 p, 2 x n, n >= 4. nullopt if no minimum has the
-/// points in front of the camera.
+/// Returns the lowest minimum of SQPnP's algebraic cost (Terzakis & Lourakis, "A consistently fast
+/// and globally optimal solution to the perspective-n-point problem", ECCV 2020) that descents from
+/// eight starts reach, also for coplanar points. It need not be the global one. `seen` are
+/// normalized coordinates K^-1 p, 2 x n, n >= 4. nullopt if no minimum has most points in front of
+/// the camera.
 std::optional<Pose> solve_sqpnp(const Eigen::Matrix3Xd& points_w, const Eigen::Matrix2Xd& seen);
 
 /// Refines a pose by Gauss-Newton on the reprojection error. Each step uses the points within three

@@ -56,6 +56,8 @@ class LinearForm {
 
 /// A homography with all elements of H^T H - I below this is a rotation (OpenCV's value).
 constexpr double kRotationOnly = 1e-3;
+/// Largest share of the points that a feasible motion puts behind a camera.
+constexpr double kMostBehind = 0.02;
 
 double root(double x) { return std::sqrt(std::max(x, 0.0)); }
 
@@ -195,13 +197,18 @@ int points_behind(const HomographyMotion& motion, const Eigen::Matrix3Xd& rays_1
   return motion.normal.dot(motion.tau) < 1 ? behind : static_cast<int>(rays_1.cols());
 }
 
+bool is_feasible(int behind, int count) { return behind <= kMostBehind * count; }
+
 std::vector<HomographyMotion> decompose_homography(const Matrix3d& H,
                                                    const Matrix3d& K,
                                                    const Matrix2Xd& visible_px) {
   const Matrix3d K_inverse = K.inverse();
   const Eigen::Matrix3Xd rays = K_inverse * visible_px.colwise().homogeneous();
   auto motions = decompose_homography(K_inverse * H * K);
-  std::erase_if(motions, [&](const auto& motion) { return points_behind(motion, rays) > 0; });
+  const auto count = static_cast<int>(rays.cols());
+  std::erase_if(motions, [&](const HomographyMotion& motion) {
+    return !is_feasible(points_behind(motion, rays), count);
+  });
   return motions;
 }
 

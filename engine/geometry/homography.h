@@ -51,8 +51,12 @@ std::vector<HomographyMotion> decompose_homography(const Eigen::Matrix3d& H);
 /// plane. `rays_1` of frame 1, 3 x n.
 int points_behind(const HomographyMotion& motion, const Eigen::Matrix3Xd& rays_1);
 
-/// Returns the feasible decompositions of p_2 ~ H p_1, at most two: those with all points in front
-/// of both cameras. `visible_px` are points of frame 1, 2 x n.
+/// Returns whether a motion that puts `behind` of `count` points behind a camera is feasible: at
+/// most 2 %, because noise moves points of a grazing plane over its horizon.
+bool is_feasible(int behind, int count);
+
+/// Returns the feasible decompositions of p_2 ~ H p_1, at most two. `visible_px` are points of
+/// frame 1, 2 x n.
 std::vector<HomographyMotion> decompose_homography(const Eigen::Matrix3d& H,
                                                    const Eigen::Matrix3d& K,
                                                    const Eigen::Matrix2Xd& visible_px);

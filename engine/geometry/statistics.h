@@ -26,6 +26,10 @@ double sum_of_squares(std::span<const double> values);
 /// Returns the root mean square; 0 for no values.
 double root_mean_square(std::span<const double> values);
 
+/// Returns the weight of Huber's loss relative to that of the squared one. `knee` has the unit of
+/// `length`.
+inline double huber_weight(double length, double knee) { return length > knee ? knee / length : 1; }
+
 /// Returns where the parabola through values at -1, 0 and 1 has its minimum; nullopt if it has
 /// none.
 std::optional<double> parabola_minimum(double before, double middle, double after);

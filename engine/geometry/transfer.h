@@ -34,6 +34,12 @@ struct Transfer {
   Eigen::Matrix<double, 2, 3> d_rotation() const { return d_y * skew(y); }
   /// dp/dt of tau + R_wc t [px].
   Eigen::Matrix<double, 2, 3> d_translation() const { return -height * d_y; }
+  /// dp/dp_1, the slope of the homography.
+  Eigen::Matrix2d d_reference(const FrameState& state) const {
+    const Eigen::Matrix<double, 3, 2> A =
+        state.R_cw.leftCols<2>() - tau_c * state.normal.head<2>().transpose();
+    return d_y * (A * Eigen::Vector2d(1 / state.fx, 1 / state.fy).asDiagonal());
+  }
   /// dp/d(u, phi, t), u over the normal's tangents.
   Eigen::Matrix<double, 2, 8> jacobian(const Eigen::Matrix<double, 3, 2>& tangents) const {
     Eigen::Matrix<double, 2, 8> J;

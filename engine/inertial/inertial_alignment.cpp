@@ -304,7 +304,7 @@ UncertainPoses uncertain_poses(const Window& window, const Initialization& resul
   }
   poses.bias_rad_s = result.bias_rad_s;
   if (!poses.bias_rad_s && window.gyro) poses.bias_rad_s = window.gyro->bias_rad_s;
-  poses.time_offset_s = result.time_offset_s.value_or(0);
+  poses.time_offset_correction_s = result.time_offset_correction_s.value_or(0);
   if (!result.uncertainty || result.uncertainty->joint_covariance.size() == 0) return poses;
   const Uncertainty& u = *result.uncertainty;
   for (int k = 0; k < std::min(3, u.joint_bias_rows); ++k) rows.push_back(3 * (all - 1) + k);
@@ -335,8 +335,9 @@ InertialAlignment align_inertial(const UncertainPoses& poses,
                                kLeastFrames,
                                poses.cameras.size()));
   if (poses.covariance.size() == 0) return refused("the uncertainty of the poses is unknown");
-  const std::int64_t offset_ns =
-      gyroscope.time_offset_ns + static_cast<std::int64_t>(std::llround(1e9 * poses.time_offset_s));
+  const auto correction_ns =
+      static_cast<std::int64_t>(std::llround(1e9 * poses.time_offset_correction_s));
+  const std::int64_t offset_ns = gyroscope.time_offset_ns + correction_ns;
   const ImuNoise noise = noise_of(gyroscope, poses, offset_ns, options);
   const Vector3d bias = poses.bias_rad_s.value_or(gyroscope.bias_rad_s);
   ImuIntervals measured = imu_intervals(gyroscope, poses.times_ns, offset_ns, bias, noise);

@@ -72,7 +72,7 @@ struct UncertainPoses {
   /// if it was estimated with them (3 more rows). Empty if unknown.
   Eigen::MatrixXd covariance;
   std::optional<Eigen::Vector3d> bias_rad_s = {};  ///< gyroscope bias of these rotations
-  double time_offset_s = 0;                        ///< added to that of the gyroscope's clock
+  double time_offset_correction_s = 0;             ///< added to that of the gyroscope's clock
   /// Rows of `covariance` in the result's joint covariance; empty if that is missing.
   std::vector<int> joint_rows = {};
 

@@ -164,7 +164,8 @@ std::optional<joint::Solution> solve_jointly(const FitTask& task, const Fit& fit
   return other ? better_of_twins(std::move(*solution), std::move(*other)) : solution;
 }
 
-/// Continues a fit by the solution of the joint model; a row delay counts if it is significant.
+/// Continues a fit by the solution of the joint model, with the points as its cameras see them. The
+/// fit has the row delay if it is significant; the points are moved by it in any case.
 void take(const joint::Solution& joint, const Window& window, Fit& fit) {
   SolverReport solver = joint.solver;
   add_effort(fit.solution.solver, solver);
@@ -173,13 +174,18 @@ void take(const joint::Solution& joint, const Window& window, Fit& fit) {
   const double sigma_s = joint.uncertainty.row_delay_sigma_s.value_or(0);
   const bool significant = std::abs(joint.row_delay_s) > kSignificantSigmas * sigma_s;
   fit.row_delay_s = significant ? joint.row_delay_s : 0;
-  fit.window = window;
-  if (significant)
+  fit.window = joint.lens_residual ? without_lens_residual(window, *joint.lens_residual) : window;
+  if (joint.row_delay_s != 0)
     fit.window =
-        without_rolling_shutter(window, joint.motion, fit.rotations.model, {joint.row_delay_s});
+        without_rolling_shutter(fit.window, joint.motion, fit.rotations.model, {joint.row_delay_s});
   PlaneObservations moved = plane_observations(fit.window, numbers_of(joint.motion.others));
   copy_weights(fit.observations, moved);
   fit.observations = std::move(moved);
+}
+
+void set_time_offset(const Window& window, double correction_s, Initialization& result) {
+  result.time_offset_correction_s = correction_s;
+  result.time_offset_s = window.gyro->time_offset_s + correction_s;
 }
 
 /// Returns the result for the window corrected for its own `row_delay`, whose standard deviation
@@ -230,7 +236,7 @@ Initialization restart_gpo_joint(const Window& given,
   PlaneMotion motion = motion_of(start);
   const RotationModel model = start.uncertainty ? start.uncertainty->rotations : window.rotations;
   if (model == RotationModel::bias) motion.bias_rad_s = *start.bias_rad_s;
-  motion.time_offset_s = start.time_offset_s.value_or(0);
+  motion.time_offset_correction_s = start.time_offset_correction_s.value_or(0);
   const RotationUnknowns rotations{model,
                                    model == RotationModel::bias && window.gyro->noise_density > 0};
   const FitTask of_all{window, options, sigma_px_of(window), watch};
@@ -294,8 +300,9 @@ Initialization initialize_gpo_joint(const Window& given,
   set_plane_uncertainties(result);
   if (window.rotations == RotationModel::bias) result.bias_rad_s = bias_rad_s;
   if (gyro_unknowns(window, fit.rotations.model) > 3)
-    result.time_offset_s = fit.solution.motion.time_offset_s;
+    set_time_offset(window, fit.solution.motion.time_offset_correction_s, result);
   if (fit.row_delay_s != 0) result.row_delay_s = fit.row_delay_s;
+  if (joint) result.lens_residual = joint->lens_residual;
   if (joint && joint->other) result.other_minimum = solution_of(facing(fit.window, *joint->other));
   return result;
 }

@@ -39,11 +39,10 @@ struct Reconstruction {
   std::vector<std::optional<Vector3d>> points;  ///< one per track; inlier tracks only
 };
 
-/// Triangulates all inlier tracks from the frames with a pose.
-void triangulate_tracks(const Window& window, Reconstruction& scene) {
-  std::ranges::fill(scene.points, std::nullopt);
-  for (const MapPoint& point : triangulated(window, scene.cameras))
-    scene.points[point.track] = point.position;
+/// Triangulates the inlier tracks of a frame from the frames with a pose.
+void triangulate_tracks(const Window& window, int frame, Reconstruction& scene) {
+  for (const int track : window.inlier_tracks(frame))
+    scene.points[track] = triangulated_track(window, scene.cameras, track);
 }
 
 /// Returns the motion halfway between two decompositions.
@@ -58,7 +57,7 @@ Reconstruction reconstruct_pair(const Window& window, int frame, const Homograph
   scene.points.resize(window.track_count());
   scene.cameras[0] = Pose{};
   scene.cameras[frame] = Pose{motion.R_21.transpose(), -motion.tau};
-  triangulate_tracks(window, scene);
+  triangulate_tracks(window, frame, scene);
   return scene;
 }
 
@@ -218,7 +217,7 @@ std::optional<std::string> add_frames(const Window& window,
     scene.cameras[i] = resect_frame(window, scene, i);
     if (!scene.cameras[i])
       return fmt::format("frame {} has no pose from the triangulated points", window.start + i);
-    triangulate_tracks(window, scene);
+    triangulate_tracks(window, i, scene);
   }
   return std::nullopt;
 }

@@ -70,7 +70,7 @@ void lower_covariances(const JointRows& rows, const MatrixXd& less, Initializati
 void move(const Window& window, const JointRows& rows, const VectorXd& step, Initialization& r) {
   PlaneMotion before;
   if (window.gyro) before.bias_rad_s = r.bias_rad_s.value_or(window.gyro->bias_rad_s);
-  before.time_offset_s = r.time_offset_s.value_or(0);
+  before.time_offset_correction_s = r.time_offset_correction_s.value_or(0);
   for (Index i = 1; i < rows.frames; ++i) {
     Pose& camera = r.cameras[i];
     camera.p_wc += step.segment<3>(JointRows::of_center(i));
@@ -80,7 +80,8 @@ void move(const Window& window, const JointRows& rows, const VectorXd& step, Ini
     camera.R_wc = camera.R_wc * so3_exp(by_gyro * step.segment(rows.of_gyro(), gyro));
   }
   if (r.bias_rad_s && rows.gyro > 0) *r.bias_rad_s += step.segment<3>(rows.of_gyro());
-  if (r.time_offset_s && rows.gyro > 3) *r.time_offset_s += step(rows.of_gyro() + 3);
+  for (auto* offset_s : {&r.time_offset_s, &r.time_offset_correction_s})
+    if (*offset_s && rows.gyro > 3) **offset_s += step(rows.of_gyro() + 3);
   r.plane = moved_plane(r.plane, step.segment(rows.of_plane(0), 2));
   if (!r.planes.empty()) r.planes.front().plane = r.plane;
   for (std::size_t k = 1; k < r.planes.size(); ++k)

@@ -3,6 +3,7 @@
 #include "engine/base/error.h"
 #include "engine/base/internal/background_job.h"
 #include "engine/base/limits.h"
+#include "engine/base/stop.h"
 #include "engine/diagnosis/limits.h"
 #include "engine/initialize.h"
 #include "engine/live.h"
@@ -258,6 +259,8 @@ LiveOutcome LiveInitializer::Impl::solved(const Task& task, const std::stop_toke
         gpo::initialize(camera, frames, gyroscope, options.initialize, stop))};
   } catch (const std::exception& error) {
     return {nullptr, message_of(error)};
+  } catch (const Stopped&) {
+    throw;  // by the caller's own thread, or by the background job, which expects it
   } catch (...) {
     return {nullptr, "the method failed with an unknown error"};
   }

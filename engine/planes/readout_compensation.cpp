@@ -3,6 +3,7 @@
 #include "engine/planes/readout_compensation.h"
 
 #include "engine/geometry/homography.h"
+#include "engine/geometry/lens_residual.h"
 #include "engine/geometry/statistics.h"
 
 #include <algorithm>
@@ -29,8 +30,8 @@ constexpr int kEvaluated = 10;          // frames, spread over the window
 constexpr int kLeastFittedTracks = 20;  // on a plane in a frame
 constexpr int kRegions = 4;             // in each direction of the reference image
 constexpr int kReweightings = 2;        // robust weights
-constexpr int kLensTerms = 14;          // quadratic and cubic monomials, two coordinates
-constexpr double kLens_px = 1;          // prior of each, at the corners
+constexpr int kLensTerms = 2 * kLensMonomials;
+constexpr double kLens_px = 1;  // prior of each, at the corners
 constexpr int kUnknowns = 1 + kLensTerms;
 constexpr double kHuberSigmas = 2.5;
 constexpr double kMostOfNoise = 0.5;  // share of the information on the row delay
@@ -93,11 +94,10 @@ Eigen::Matrix<double, 2, kUnknowns> displacements(const Window& window,
   Eigen::Matrix<double, 2, kUnknowns> result;
   result.col(0) = kUnit_s * window.row_of(frame, track) * velocity_px_s;
   const Vector2d q = (window.points_px[frame].col(track) - center_px) / center_px.norm();
-  const double x = q.x(), y = q.y();
-  const double monomials[] = {x * x, x * y, y * y, x * x * x, x * x * y, x * y * y, y * y * y};
+  const LensMonomials lens = lens_monomials(q);
   for (int k = 0; k < kLensTerms; ++k) {
     result.col(1 + k).setZero();
-    result(k % 2, 1 + k) = monomials[k / 2];
+    result(k % 2, 1 + k) = lens(k / 2);
   }
   return result;
 }
@@ -193,7 +193,7 @@ VectorXd huber_weights(const VectorXd& errors, double sigma_px) {
   VectorXd weights(errors.size());
   for (Eigen::Index k = 0; k < weights.size(); k += 2)
     weights.segment<2>(k).setConstant(
-        1 / std::max(1.0, errors.segment<2>(k).norm() / (kHuberSigmas * sigma_px)));
+        huber_weight(errors.segment<2>(k).norm(), kHuberSigmas * sigma_px));
   return weights;
 }
 

@@ -172,7 +172,7 @@ class OffsetProblem {
       one.J.col(0) = -step->change;  // a later result is read at an earlier time
       if (rates_are_biased_) one.J.rightCols<3>() = step->length_s() * Eigen::Matrix3d::Identity();
       one.r = r;
-      one.weight = std::min(1.0, kHuber * scale / std::max(r.norm(), 1e-15));
+      one.weight = huber_weight(r.norm(), kHuber * scale);
       one.length_s = step->length_s();
     }
     return equations;

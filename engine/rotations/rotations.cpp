@@ -204,6 +204,7 @@ Rotations sensitive_gyro_rotations(const Gyroscope& gyroscope,
                        .prior_rad_s = gyroscope.bias_rad_s,
                        .prior_sigma_rad_s = gyroscope.bias_sigma_rad_s,
                        .bias_covariance = held_rad_s * held_rad_s * Matrix3d::Identity(),
+                       .time_offset_s = 1e-9 * static_cast<double>(gyroscope.time_offset_ns),
                        .time_offset_sigma_s = kTimeOffsetSigma_s,
                        .noise_density = gyroscope.noise_density,
                        .d_bias = {},
@@ -261,7 +262,7 @@ GyroBias fit_gyro_bias(const Gyroscope& given,
     Matrix3d JtJ = prior * Matrix3d::Identity();
     Vector3d Jtr = prior * (bias - given.bias_rad_s);
     for (std::size_t i = 0; i < J.size(); ++i) {
-      const double huber = 1 / std::max(residuals[i].norm() / sigma_rad, 1.0);
+      const double huber = huber_weight(residuals[i].norm(), sigma_rad);
       const double weight = huber / (sigma_rad * sigma_rad * static_cast<double>(residuals.size()));
       JtJ += weight * J[i].transpose() * J[i];
       Jtr += weight * J[i].transpose() * residuals[i];

@@ -24,8 +24,9 @@ using SynthesisProgress = std::function<void(int frames_done, int frames)>;
 
 /// Writes the recording as an EuRoC folder (README, "Recordings") with its truth, `plane.yaml` and
 /// `board.yaml`. World: the desk is z = 0, z up; without a desk there is no `plane.yaml`. The same
-/// recipe makes the same bytes with any number of threads. Throws InputError if `output` exists and
-/// is not empty, or cannot be written; never leaves an incomplete folder.
+/// recipe makes the same bytes with any number of threads on one kind of processor (with or without
+/// AVX2 and FMA). Throws InputError if `output` exists and is not empty, or cannot be written;
+/// never leaves an incomplete folder.
 void synthesize(const Recipe& recipe,
                 const fs::path& output,
                 const SynthesisProgress& progress = {},

@@ -3,14 +3,17 @@
 #include "engine/window/window.h"
 
 #include "engine/geometry/camera.h"
+#include "engine/geometry/decompositions.h"
 #include "engine/geometry/homography.h"
 #include "engine/geometry/pose.h"
 #include "engine/geometry/statistics.h"
+#include "engine/geometry/transfer.h"
 
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
+#include <Eigen/Cholesky>
 #include <Eigen/Geometry>
 #include <Eigen/LU>
 
@@ -38,17 +41,43 @@ std::vector<double> transfer_errors_px(const Matrix3d& H, const Pairs& pairs) {
   return errors;
 }
 
+/// Returns the rotation R_i1 with the least sum |pi(K R_i1 K^-1 p_1) - p_i|^2, by Gauss-Newton from
+/// the one that maps the rays best.
+Matrix3d best_rotation(const Matrix3d& K, const Pairs& pairs) {
+  constexpr int kMostSteps = 5;
+  constexpr double kSettled_rad = 1e-7;
+  const Matrix3d K_inverse = K.inverse();
+  const Matrix3Xd rays_1 = K_inverse * pairs.from.colwise().homogeneous();
+  const Matrix3Xd rays_i = K_inverse * pairs.to.colwise().homogeneous();
+  const Matrix3d moments =
+      rays_i.colwise().normalized() * rays_1.colwise().normalized().transpose();
+  FrameState at{.R_cw = nearest_rotation(moments), .fx = K(0, 0), .fy = K(1, 1)};
+  const Matrix2Xd seen_px = pairs.to.colwise() - K.topRightCorner<2, 1>();
+  for (int step = 0; step < kMostSteps; ++step) {
+    Matrix3d JtJ = Matrix3d::Zero();
+    Eigen::Vector3d Jtr = Eigen::Vector3d::Zero();
+    for (Eigen::Index k = 0; k < rays_1.cols(); ++k) {
+      const Transfer there = transfer_on_plane(at, rays_1.col(k));
+      const Eigen::Matrix<double, 2, 3> J = there.d_rotation();
+      JtJ += J.transpose() * J;
+      Jtr += J.transpose() * (there.pixel - seen_px.col(k));
+    }
+    const Eigen::Vector3d phi = -JtJ.ldlt().solve(Jtr);
+    if (!phi.allFinite()) break;
+    at.R_cw = so3_exp(-phi) * at.R_cw;
+    if (phi.norm() < kSettled_rad) break;
+  }
+  return at.R_cw;
+}
+
 }  // namespace
 
 FrameErrors frame_errors(const Window& window, int frame) {
   if (frame == 0 || window.inlier_count(frame) == 0) return {};
   const Pairs pairs = inlier_pairs(window, frame);
-  const Matrix3d K_inverse = window.K.inverse();
-  const Matrix3Xd rays_1 = (K_inverse * pairs.from.colwise().homogeneous()).colwise().normalized();
-  const Matrix3Xd rays_i = (K_inverse * pairs.to.colwise().homogeneous()).colwise().normalized();
-  const Matrix3d R_i1 = align(rays_1, rays_i).R_ab;
   auto homography = transfer_errors_px(window.H_i1[frame], pairs);
-  auto rotation = transfer_errors_px(window.K * R_i1 * K_inverse, pairs);
+  auto rotation =
+      transfer_errors_px(window.K * best_rotation(window.K, pairs) * window.K.inverse(), pairs);
   FrameErrors errors{.inliers = static_cast<int>(homography.size())};
   errors.homography_squares = sum_of_squares(homography);
   errors.rotation_squares = sum_of_squares(rotation);

@@ -45,6 +45,7 @@ struct GyroSensitivity {
   double prior_sigma_rad_s = 0.1;  ///< standard deviation of `prior_rad_s`, each axis
   /// Covariance of `bias_rad_s`, before the tracks are seen; for methods that hold the rotations.
   Eigen::Matrix3d bias_covariance = 0.01 * Eigen::Matrix3d::Identity();
+  double time_offset_s = 0;  ///< used to integrate R_wc: gyroscope clock = camera clock + offset
   /// Standard deviation of the offset between the clocks of camera and gyroscope; 0: exact.
   double time_offset_sigma_s = 0;
   double noise_density = 0;                ///< white noise of the rates [rad/s/sqrt(Hz)]

@@ -76,6 +76,7 @@ Gyroscope gyroscope_of(const SimulationOptions& options,
   gyroscope.bias_sigma_rad_s = 0.01;
   gyroscope.noise_density = options.gyro_noise_rad_s * std::sqrt(0.005);
   gyroscope.R_gyro_camera = so3_exp(Vector3d(1.2, -0.7, 2));
+  gyroscope.time_offset_ns = std::llround(1e9 * options.recorded_offset_s);
   const double last_s = kFramePeriod_s * (options.frames - 1);
   constexpr double kPeriod_s = 0.005;
   constexpr double kMargin_s = 0.03;

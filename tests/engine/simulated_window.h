@@ -53,6 +53,7 @@ struct SimulationOptions {
   /// integrated [rad/s]; nullopt: the true rotations.
   std::optional<double> gyro_bias_rad_s = std::nullopt;
   double gyro_offset_s = 0;       ///< gyroscope clock = camera clock + offset, also unknown
+  double recorded_offset_s = 0;   ///< the same according to the recording
   double reference_noise_px = 0;  ///< on each coordinate, in the reference frame
   double row_delay_s = 0;         ///< rolling shutter, around the middle row
   /// Camera of the recorded image, whose rows are read; nullopt: no distortion.

@@ -289,9 +289,15 @@ void add_sensors(const Initialization& result, ordered_json& json) {
   if (result.bias_rad_s) json["bias_rad_s"] = vector_json(*result.bias_rad_s);
   const Uncertainty u = result.uncertainty.value_or(Uncertainty{});
   if (result.time_offset_s) json["time_offset_s"] = *result.time_offset_s;
+  if (result.time_offset_correction_s)
+    json["time_offset_correction_s"] = *result.time_offset_correction_s;
   if (u.time_offset_sigma_s) json["time_offset_sigma_s"] = *u.time_offset_sigma_s;
   if (result.row_delay_s) json["row_delay_s"] = *result.row_delay_s;
   if (result.row_delay_s && u.row_delay_sigma_s) json["row_delay_sigma_s"] = *u.row_delay_sigma_s;
+  if (const auto& lens = result.lens_residual)
+    json["lens_residual"] = {{"corner_px", lens->corner_px},
+                             {"x_px", vector_json(lens->coefficients_px.col(0))},
+                             {"y_px", vector_json(lens->coefficients_px.col(1))}};
 }
 
 /// Adds decompositions, a refused solution and dropped tracks, if there are any.
@@ -300,14 +306,12 @@ void add_rejected(const Inspection& inspection, ordered_json& json) {
   const auto& ids = inspection.tracks->ids;
   const int start = inspection.window->start;
   if (!result.candidates.empty())
-    json["candidates"] = array_json(result.candidates, [&](const auto& one) {
-      return candidate_json(one, start);
-    });
+    json["candidates"] =
+        array_json(result.candidates, [&](const auto& one) { return candidate_json(one, start); });
   if (result.refused) json["refused"] = refused_json(*result.refused, start);
   if (result.ambiguity && !result.ambiguity->undecided.empty())
-    json["alternatives"] = array_json(result.ambiguity->undecided, [&](const auto& one) {
-      return refused_json(one, start);
-    });
+    json["alternatives"] = array_json(result.ambiguity->undecided,
+                                      [&](const auto& one) { return refused_json(one, start); });
   if (!result.dropped.empty())
     json["dropped"] = array_json(result.dropped, [&](int j) -> ordered_json {
       return {{"track", ids[j]}, {"reason", "beyond the plane's horizon"}};

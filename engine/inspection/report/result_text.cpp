@@ -107,9 +107,10 @@ std::string uncertainty_text(const Initialization& result, CameraSource source) 
   };
   if (result.time_offset_s)
     text += row("time offset",
-                "{:.2f}{} ms",
+                "{:.2f}{} ms ({:+.2f} ms to the recorded one)",
                 1e3 * *result.time_offset_s,
-                sigma(1e3, u.time_offset_sigma_s));
+                sigma(1e3, u.time_offset_sigma_s),
+                1e3 * result.time_offset_correction_s.value_or(0));
   if (result.row_delay_s)
     text += row("shutter",
                 "rolling, row delay {:.2f}{} us",

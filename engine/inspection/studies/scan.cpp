@@ -50,7 +50,7 @@ std::optional<ScannedStart> scan_one(Inspector& inspector,
 constexpr double kWindow_s = 0.3;
 constexpr int kFewestFrames = 5;
 constexpr int kMostFrames = 20;
-constexpr double kOnlyRotates = 1.5;  // residual of rotations to that of homographies
+constexpr double kOnlyRotates = 1.45;  // residual of rotations to that of homographies
 
 int window_frames(const Recording& recording) {
   const double period_s = 1e-9 * static_cast<double>(median_period_ns(recording.timestamps_ns));

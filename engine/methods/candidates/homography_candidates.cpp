@@ -11,9 +11,6 @@
 namespace gpo {
 namespace {
 
-/// Largest share of the points behind a camera: noise may move points over the horizon.
-constexpr double kMostBehind = 0.02;
-
 double rotation_angle_deg(const Eigen::Matrix3d& a, const Eigen::Matrix3d& b) {
   return degrees(so3_log(a.transpose() * b).norm());
 }
@@ -34,7 +31,7 @@ std::vector<HomographyCandidate> decompose_frame(const Window& window, int frame
     HomographyCandidate candidate{.frame = frame, .motion = motion, .score = score};
     candidate.behind = points_behind(motion, rays_1);
     candidate.of = static_cast<int>(rays_1.cols());
-    if (candidate.behind > kMostBehind * candidate.of)
+    if (!is_feasible(candidate.behind, candidate.of))
       candidate.reject(
           Rejection::behind_camera,
           fmt::format("points behind the camera ({} of {})", candidate.behind, candidate.of));

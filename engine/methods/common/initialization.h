@@ -4,6 +4,7 @@
 
 #include "engine/base/choice.h"
 #include "engine/geometry/homography.h"
+#include "engine/geometry/lens_residual.h"
 #include "engine/geometry/plane.h"
 #include "engine/geometry/pose.h"
 #include "engine/window/window.h"
@@ -258,7 +259,10 @@ struct Initialization {
   std::optional<double> reprojection_rms_px = {};
   std::optional<Eigen::Vector3d> bias_rad_s;  ///< gyroscope bias, if the method estimates it
   std::optional<double> time_offset_s;  ///< gyroscope clock = camera clock + offset, if estimated
-  std::optional<double> row_delay_s;    ///< between two rows of an image, if estimated
+  /// `time_offset_s` minus the offset with which the window's rotations were integrated.
+  std::optional<double> time_offset_correction_s = {};
+  std::optional<double> row_delay_s;               ///< between two rows of an image, if estimated
+  std::optional<LensResidual> lens_residual = {};  ///< if estimated; the points have it
   /// Covariances of the method's own estimates, from runs without each region of the image; nullopt
   /// if not computed.
   std::optional<NoiseSpread> own_noise;

@@ -42,7 +42,11 @@ std::vector<double> reprojection_errors_px(const Window& window,
                                            std::span<const Pose> cameras,
                                            std::span<const MapPoint> points);
 
-/// Triangulates the inlier tracks that at least two of the given cameras (one entry per frame) see.
+/// Triangulates an inlier track that at least two of the given cameras (one entry per frame) see.
+std::optional<Eigen::Vector3d> triangulated_track(const Window& window,
+                                                  std::span<const std::optional<Pose>> given,
+                                                  int track);
+/// Does the same for all inlier tracks.
 std::vector<MapPoint> triangulated(const Window& window,
                                    std::span<const std::optional<Pose>> given);
 

@@ -21,13 +21,6 @@ using Eigen::VectorXd;
 
 namespace {
 
-Monomials monomials(const Vector2d& p) {
-  const double x = p.x(), y = p.y();
-  Monomials all;
-  all << x * x, x * y, y * y, x * x * x, x * x * y, x * y * y, y * y * y;
-  return all;
-}
-
 /// Weights of an observation: of its gradient and, as a root, of its second derivatives.
 struct Weights {
   double gradient = 0;
@@ -95,6 +88,10 @@ Model Model::with(const Options& options) const {
   other.options_ = options;
   other.lay_out();
   return other;
+}
+
+LensResidual Model::lens_residual(const State& state) const {
+  return {state.lens.reshaped(kLensMonomials, 2), image_px_};
 }
 
 void Model::gather_tracks() {
@@ -179,6 +176,7 @@ void Model::predict_group(const State& state,
                           const Group& group,
                           std::vector<Prediction>& all) const {
   const bool has_lens = !state.lens.isZero(0);
+  const LensResidual lens = lens_residual(state);
   FrameState at = frame_state(observations_, state.motion, group.frame, group.plane);
   const FrameState at_stamp = at;
   const Velocity& velocity = state.velocities[group.frame];
@@ -198,15 +196,11 @@ void Model::predict_group(const State& state,
     }
     const Vector2d latent = (tracks_[j].reference_px + state.shift_px.col(j)).cwiseProduct(per_px);
     p.transfer = transfer_on_plane(at, Vector3d(latent.x(), latent.y(), 1));
-    const Eigen::Matrix<double, 3, 2> A =
-        at.R_cw.leftCols<2>() - at.tau_c * at.normal.head<2>().transpose();
-    p.d_latent.noalias() = p.transfer.d_y * (A * per_px.asDiagonal());
+    p.d_latent = p.transfer.d_reference(at);
     p.r = p.transfer.pixel - observed;
     if (!has_lens) continue;
     // At the predicted pixel: the noise of the observed one is correlated with the error.
-    const Monomials lens = monomials(p.transfer.pixel / image_px_);
-    p.r.x() += lens.dot(state.lens.head<kMonomials>());
-    p.r.y() += lens.dot(state.lens.tail<kMonomials>());
+    p.r += lens.error_px(p.transfer.pixel);
   }
 }
 
@@ -231,13 +225,16 @@ Model::Shared Model::shared_by(const State& state, const Group& group) const {
   return shared;
 }
 
-Model::Rows Model::jacobian(const Prediction& p, const Track& track, const Shared& shared) const {
+void Model::differentiate(const Prediction& p,
+                          const Track& track,
+                          const Shared& shared,
+                          Rows& J) const {
   const Transfer& at = p.transfer;
   const Eigen::Matrix<double, 3, 2> d_y = at.d_y.transpose();
   const Eigen::Matrix<double, 3, 2> d_translation = -at.height * d_y;
   Eigen::Matrix<double, 3, 2> d_rotation;
   if (shared.turns) d_rotation = at.d_rotation().transpose();
-  Rows J = Rows::Zero(std::ssize(shared.columns), 2);
+  J.setZero(std::ssize(shared.columns), 2);
   const Vector2d along = shared.at_stamp.tangents.transpose() * at.ray_1;
   J.topRows<2>() = -along * (at.tau_c.transpose() * d_y);
   Index c = UnknownsLayout::size_of_plane(shared.plane);
@@ -259,9 +256,9 @@ Model::Rows Model::jacobian(const Prediction& p, const Track& track, const Share
   for (int k = 0; k < layout_.lens_parameters; ++k)
     J.row(c++) = -lens_moves_px_[k][shared.frame].col(track.column).transpose();
   if (layout_.lens > 0) {
-    const Monomials lens = monomials(at.pixel / image_px_);
-    J.col(0).segment<kMonomials>(c) = lens;
-    J.col(1).segment<kMonomials>(c + kMonomials) = lens;
+    const LensMonomials lens = lens_monomials(at.pixel / image_px_);
+    J.col(0).segment<kLensMonomials>(c) = lens;
+    J.col(1).segment<kLensMonomials>(c + kLensMonomials) = lens;
     c += kLensTerms;
   }
   if (layout_.velocity > 0) {
@@ -269,10 +266,9 @@ Model::Rows Model::jacobian(const Prediction& p, const Track& track, const Share
     if (layout_.velocity == 6) J.middleRows<3>(c + 3) = p.seconds * d_rotation;
     c += layout_.velocity;
   }
-  if (shared.frame == 0) return J;
+  if (shared.frame == 0) return;
   if (layout_.own == 6) J.middleRows<3>(c) = d_rotation;
   J.bottomRows<3>() = d_translation;
-  return J;
 }
 
 // Observations of one plane in one frame have the same unknowns: one product serves them all.
@@ -290,6 +286,7 @@ int Model::add_group(const Shared& shared,
   Panels J(kPanel, panel_count(width) * observed);
   J.rightCols(observed).setZero();
   int weighted = 0;
+  Rows rows;
   for (Index o = 0; o < std::ssize(group.tracks); ++o) {
     const int j = group.tracks[o];
     const Prediction& p = predictions[o];
@@ -305,13 +302,16 @@ int Model::add_group(const Shared& shared,
     all.curvature += 0.5 * weights.root.squaredNorm() / noise.scale;
     ++weighted;
     all.in_front = all.in_front && p.transfer.in_front();
-    const Rows rows = jacobian(p, tracks_[j], shared);
+    differentiate(p, tracks_[j], shared, rows);
     const Vector2d r = weights.gradient * p.r;
     const Matrix2d weighted_x = weights.root * p.d_latent;
     const Matrix2d h = weights.root * weighted_x;
     all.V[j] += weighted_x.transpose() * weighted_x;
     all.v[j] += p.d_latent.transpose() * r;
-    all.latent_weights[j] += weights.gradient * (p.d_latent.transpose() * p.d_latent);
+    if (group.frame == 0)
+      all.reference_weights[j] = weights.gradient;
+    else
+      all.latent_weights[j] += weights.gradient * (p.d_latent.transpose() * p.d_latent);
     const Matrix2d& root = weights.root;
     for (Index c = 0; c < width; ++c) {
       const double x = rows(c, 0), y = rows(c, 1);
@@ -351,6 +351,7 @@ Normals Model::linearize(const State& state,
   all.half.setZero(kPanel, panel_count(size) * 2 * count);
   for (auto* of_tracks : {&all.V, &all.latent_weights}) of_tracks->assign(count, Matrix2d::Zero());
   all.v.assign(count, Vector2d::Zero());
+  all.reference_weights.assign(count, 0);
   all.cost = all.curvature = 0;
   all.in_front = true;
   int weighted = 0;

@@ -5,6 +5,7 @@
 // One least-squares problem over everything that is unknown in a window: planes, cameras,
 // gyroscope, row delay, positions of the tracks in the reference frame, errors of the lens and of
 // the surfaces (engine/method.md, "Joint model").
+#include "engine/geometry/lens_residual.h"
 #include "engine/methods/joint/self_product.h"
 #include "engine/methods/plane/plane_motion.h"
 #include "engine/methods/plane/smooth_path.h"
@@ -33,10 +34,8 @@ struct Options {
   int velocity = 0;
 };
 
-inline constexpr double kGateSigmas = 5;           ///< observations beyond have no weight
-inline constexpr int kMonomials = 7;               ///< degrees 2 and 3 in the pixel
-inline constexpr int kLensTerms = 2 * kMonomials;  ///< for both coordinates
-using Monomials = Eigen::Matrix<double, kMonomials, 1>;
+inline constexpr double kGateSigmas = 5;               ///< observations beyond have no weight
+inline constexpr int kLensTerms = 2 * kLensMonomials;  ///< for both coordinates
 
 /// Order of the unknowns: those that all frames share (`UnknownsLayout`), row delay, lens
 /// parameters (held: they only contribute to the uncertainty), lens residual, the frames' own ones:
@@ -107,7 +106,9 @@ struct Normals {
   Panels half;                     ///< E L^-T: unknowns x latent positions, V = L L^T
   std::vector<Eigen::Matrix2d> V;  ///< over the latent position of each track
   std::vector<Eigen::Vector2d> v;  ///< gradient by the same, times L^-1
-  std::vector<Eigen::Matrix2d> latent_weights;  ///< V with the weights of the least squares
+  /// V with the weights of the least squares, without the reference frame.
+  std::vector<Eigen::Matrix2d> latent_weights;
+  std::vector<double> reference_weights;  ///< weight of each track in the reference frame
   double cost = 0;
   double curvature = 0;  ///< the loss's mean over the observations; 1 for least squares
   bool in_front = true;
@@ -143,6 +144,7 @@ class Model {
   int observation_count() const { return observations_.count(); }
   /// Returns the same model with other unknowns.
   Model with(const Options& options) const;
+  LensResidual lens_residual(const State& state) const;
 
   State first(const PlaneMotion& start) const;
   /// Sets the predictions of all observations.
@@ -162,7 +164,7 @@ class Model {
 
  private:
   /// Derivatives by the shared columns, transposed.
-  using Rows = Eigen::Matrix<double, Eigen::Dynamic, 2, 0, 64, 2>;
+  using Rows = Eigen::Matrix<double, Eigen::Dynamic, 2>;
 
   void lay_out();
   void gather_tracks();
@@ -182,8 +184,11 @@ class Model {
     std::vector<Eigen::Index> in_panel;  ///< their first elements in `Normals::half`
   };
   Shared shared_by(const State& state, const Group& group) const;
-  /// Returns the derivatives of an error over the shared columns.
-  Rows jacobian(const Prediction& prediction, const Track& track, const Shared& shared) const;
+  /// Sets the derivatives of an error over the shared columns.
+  void differentiate(const Prediction& prediction,
+                     const Track& track,
+                     const Shared& shared,
+                     Rows& J) const;
   struct Weighting {
     Scales scales;
     Curvature curvature;

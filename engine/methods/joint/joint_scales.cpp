@@ -102,8 +102,8 @@ double reference_noise_px(const Model& model,
     for (std::size_t o = 0; group.frame == 0 && o < predictions[g].size(); ++o) {
       const int track = group.tracks[o];
       const double ratio = model.noise_ratio(track, 0);
-      const double weight = variance / std::pow(ratio * scales.reference_px, 2);
-      const Matrix2d of_others = at.latent_weights[track] - weight * Matrix2d::Identity();
+      const double weight = at.reference_weights[track];
+      const Matrix2d& of_others = at.latent_weights[track];
       if (!(of_others.determinant() > 0) || of_others.trace() < 4) continue;
       const Matrix2d inverse = of_others.inverse();
       const Vector2d& r = predictions[g][o].r;

@@ -24,12 +24,13 @@ constexpr int kMostIterations = 20;
 constexpr int kRestartIterations = 3;
 /// Then the velocities stay, because two smoothings may take turns.
 constexpr int kVelocityIterations = 5;
-constexpr double kSettled_rad = 2e-6;  // step of the normal
+/// Length of the last step over all unknowns, in their standard deviations.
+constexpr double kSettledSigmas = 0.01;
+/// The same of a solution: the noise and the weights that are estimated along with it never quite
+/// settle.
+constexpr double kNearlySettledSigmas = 0.1;
 /// A Newton step on the loss diverges if it multiplies the cost by more.
 constexpr double kMostRise = 1.5;
-/// Last step of a solution relative to its standard deviation: the noise and the weights that are
-/// estimated along with it never quite settle.
-constexpr double kSettledSigmas = 0.1;
 constexpr double kFitsAsWell = 9;  // chi-square
 constexpr double kCloseTwins_deg = 20;
 
@@ -53,8 +54,8 @@ struct Iteration {
   double most_cost = 0;
   Normals normals = {};  ///< last linearization
   SolverReport solver = {};
-  double last_step = 0;      ///< length over all unknowns
-  double last_step_rad = 0;  ///< change of the normal
+  double last_step = 0;         ///< length over all unknowns, each in its unit
+  double last_step_sigmas = 0;  ///< the same in standard deviations of the unknowns
 };
 
 void add_to_trace(const Priors& priors, Iteration& at) {
@@ -79,17 +80,20 @@ struct Checkpoint {
 };
 
 /// Relaxation by the ratio of consecutive steps (Aitken): reweighted steps may overshoot again and
-/// again, or be too short, along a direction that the window hardly determines.
+/// again, or be too short, along a direction that the window hardly determines. The ratio is that
+/// of the inner product by the information H, in which all unknowns have the unit of their standard
+/// deviations.
 struct Relaxation {
   static constexpr double kLeast = 0.3, kMost = 3;
   double factor = 1;
   VectorXd last = {};  ///< previous step, not relaxed; empty after a step of another kind
 
-  double next(const VectorXd& step) {
+  /// `step` is -H^-1 gradient.
+  double next(const VectorXd& step, const VectorXd& gradient, const Eigen::MatrixXd& H) {
     if (last.size() != step.size()) {
       factor = 1;
     } else {
-      const double left = 1 - last.dot(step) / last.squaredNorm();
+      const double left = 1 + last.dot(gradient) / last.dot(H * last);
       factor = left > 0 ? std::clamp(factor / left, kLeast, kMost) : kMost;
     }
     last = step;
@@ -108,6 +112,7 @@ bool converge(const Model& model, Iteration& at) {
   PathNoise noise;
   const Normals& normals = at.normals;
   Priors priors;
+  Eigen::MatrixXd H;
   Eigen::LLT<Eigen::MatrixXd> factor;
   Relaxation relaxation;
   const int most = model.options().uncertainty ? kMostIterations : kRestartIterations;
@@ -124,14 +129,16 @@ bool converge(const Model& model, Iteration& at) {
       newton = false;
       continue;
     }
-    factor.compute(normals.A + priors.information);
+    H = normals.A + priors.information;
+    factor.compute(H);
     if (!normals.in_front || factor.info() != Eigen::Success) return false;
     const VectorXd gradient = normals.gradient + priors.gradient;
     const VectorXd x = -factor.solve(gradient);
     if (!x.allFinite()) return false;
     add_to_trace(priors, at);
-    constexpr double kMargin = 20;  // times the expected decrease, -gradient.x / 2
-    if (k > 1 && cost + kMargin / 2 * gradient.dot(x) > at.most_cost) return false;
+    constexpr double kMargin = 20;  // times the expected decrease
+    const double decrease = std::max(0.0, -0.5 * gradient.dot(x));
+    if (k > 1 && cost - kMargin * decrease > at.most_cost) return false;
     before.reset();
     double relaxed = 1;
     if (curvature == Curvature::of_loss) {
@@ -139,21 +146,21 @@ bool converge(const Model& model, Iteration& at) {
       relaxation = {};
     } else {
       noise = model.path_noise(normals, at.scales);
-      relaxed = relaxation.next(x);
+      relaxed = relaxation.next(x, gradient, H);
     }
+    const double step_sigmas = std::sqrt(2 * decrease) / at.scales.sigma_px;
     at.state = model.moved(at.state, relaxed * x, normals);
     if (k < kVelocityIterations) model.update_velocities(at.state, noise);
     model.predict(at.state, at.predictions);
     at.scales.sigma_px = noise_px(model, at.predictions);
     at.scales.reference_px = reference_noise_px(model, at.predictions, normals, at.scales);
     at.watch.report(++at.solver.iterations, cost);
-    const double step_rad = x.head<2>().norm();
-    const bool shrinks = k > 0 && step_rad < 0.5 * at.last_step_rad;
+    const bool shrinks = k > 0 && step_sigmas < 0.5 * at.last_step_sigmas;
     if (curvature == Curvature::of_loss && !shrinks) newton = false;
     curvature = newton && shrinks ? Curvature::of_loss : Curvature::of_weights;
     at.last_step = x.norm();
-    at.last_step_rad = step_rad;
-    if (at.last_step_rad < kSettled_rad) break;
+    at.last_step_sigmas = step_sigmas;
+    if (step_sigmas < kSettledSigmas) break;
   }
   return !at.watch.stop_requested();
 }
@@ -222,14 +229,13 @@ std::optional<Solution> solve(const Window& window,
                     .scales = at.scales,
                     .row_delay_s = at.state.row_delay_s,
                     .uncertainty = {}};
+  if (at.scales.lens_px > 0) solution.lens_residual = whole.lens_residual(at.state);
+  solution.solver.termination = at.last_step_sigmas < kNearlySettledSigmas
+                                    ? Termination::convergence
+                                    : Termination::no_convergence;
   if (solution.solver.final_cost > rival.cost) return solution;
   solution.uncertainty = uncertainty_of(whole, at.state, at.normals, at.scales);
   if (!solution.uncertainty.joint_covariance.allFinite()) return std::nullopt;
-  const double settled_rad =
-      kSettledSigmas * std::sqrt(solution.uncertainty.normal_covariance.trace());
-  solution.solver.termination = at.last_step_rad < std::max(kSettled_rad, settled_rad)
-                                    ? Termination::convergence
-                                    : Termination::no_convergence;
   return solution;
 }
 

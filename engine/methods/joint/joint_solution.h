@@ -16,6 +16,7 @@ struct Solution {
   SolverReport solver;  ///< cost: the robust loss with the priors
   Scales scales;
   double row_delay_s = 0;
+  std::optional<LensResidual> lens_residual = std::nullopt;  ///< nullopt: none is likely
   Uncertainty uncertainty;
   std::optional<PlaneMotion> other = std::nullopt;  ///< the other minimum, if there is one
 };

@@ -13,7 +13,7 @@ namespace gpo::joint {
 double noise_px(const Model& model, const Predictions& predictions);
 
 /// Returns the noise of the reference positions: their distance from where the other frames place
-/// the tracks, without the noise of those [px].
+/// the tracks, without the noise of those [px]. `at` has the weights that led to the predictions.
 double reference_noise_px(const Model& model,
                           const Predictions& predictions,
                           const Normals& at,

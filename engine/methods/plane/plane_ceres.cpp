@@ -49,7 +49,7 @@ Rotation rotation_at(const PlaneTask& task,
     const int size = gyro_unknowns(task.window, task.unknowns.rotations);
     PlaneMotion motion;
     motion.bias_rad_s = Eigen::Map<const Vector3d>(block);
-    if (size == 4) motion.time_offset_s = block[3];
+    if (size == 4) motion.time_offset_correction_s = block[3];
     rotation.R_wc = gyro_rotation(task.window, frame, motion);
     rotation.moves.push_back(gyro_columns(task.window, motion, frame, size));
   }
@@ -140,7 +140,7 @@ Blocks parameter_blocks(const PlaneMotion& motion) {
   blocks.normal = rotation_from_z_axis(motion.normal);
   for (const OtherPlane& other : motion.others) blocks.others.push_back(other.m);
   blocks.tau = motion.tau;
-  blocks.bias_offset << motion.bias_rad_s, motion.time_offset_s;
+  blocks.bias_offset << motion.bias_rad_s, motion.time_offset_correction_s;
   blocks.phi = motion.gyro_noise_rad;
   blocks.phi.resize(motion.tau.size(), Vector3d::Zero());
   return blocks;
@@ -152,7 +152,7 @@ PlaneMotion motion_of(const PlaneTask& task, const PlaneMotion& start, const Blo
   for (std::size_t k = 0; k < blocks.others.size(); ++k) motion.others[k].m = blocks.others[k];
   motion.tau = blocks.tau;
   motion.bias_rad_s = blocks.bias_offset.head<3>();
-  motion.time_offset_s = blocks.bias_offset(3);
+  motion.time_offset_correction_s = blocks.bias_offset(3);
   for (int i = 1; i < task.window.frame_count(); ++i) {
     if (task.unknowns.rotations == RotationModel::free) motion.R_wc[i] *= so3_exp(blocks.phi[i]);
     if (task.unknowns.gyro_noise) motion.gyro_noise_rad[i] = blocks.phi[i];

@@ -45,7 +45,7 @@ PlaneMotion facing(const Window& window, PlaneMotion motion) {
 Eigen::Vector3d gyro_correction_rad(const Window& window, int frame, const PlaneMotion& motion) {
   const GyroSensitivity& gyro = *window.gyro;
   Eigen::Vector3d by_bias = gyro.d_bias[frame] * (motion.bias_rad_s - gyro.bias_rad_s);
-  const double dt_s = motion.time_offset_s;
+  const double dt_s = motion.time_offset_correction_s;
   if (dt_s == 0) return by_bias;
   return by_bias + dt_s * (gyro.d_offset[frame] + 0.5 * dt_s * gyro.d2_offset[frame]);
 }
@@ -96,8 +96,8 @@ GyroColumns gyro_columns(const Window& window, const PlaneMotion& motion, int fr
   if (unknowns == 0) return columns;
   columns.leftCols<3>() = window.gyro->d_bias[frame];
   if (unknowns == 4)
-    columns.col(3) =
-        window.gyro->d_offset[frame] + motion.time_offset_s * window.gyro->d2_offset[frame];
+    columns.col(3) = window.gyro->d_offset[frame] +
+                     motion.time_offset_correction_s * window.gyro->d2_offset[frame];
   columns = so3_right_jacobian(gyro_correction_rad(window, frame, motion)) * columns;
   if (!motion.gyro_noise_rad.empty()) columns = so3_exp(-motion.gyro_noise_rad[frame]) * columns;
   return columns;
@@ -113,7 +113,7 @@ GyroVector gyro_prior_sigmas(const Window& window, int unknowns) {
 GyroVector gyro_prior_errors(const Window& window, int unknowns, const PlaneMotion& motion) {
   if (unknowns == 0) return {};
   Eigen::Vector4d errors;
-  errors << motion.bias_rad_s - window.gyro->prior_rad_s, motion.time_offset_s;
+  errors << motion.bias_rad_s - window.gyro->prior_rad_s, motion.time_offset_correction_s;
   return errors.head(unknowns);
 }
 
@@ -128,7 +128,7 @@ void move_shared(const UnknownsLayout& layout,
     m = length * std::exp(u_s(2)) * moved_normal(m / length, u_s.head<2>());
   }
   if (layout.gyro > 0) motion.bias_rad_s += step.segment<3>(layout.of_gyro());
-  if (layout.gyro == 4) motion.time_offset_s += step(layout.of_gyro() + 3);
+  if (layout.gyro == 4) motion.time_offset_correction_s += step(layout.of_gyro() + 3);
 }
 
 void move_frame(const Window& window,

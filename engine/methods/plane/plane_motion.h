@@ -29,7 +29,8 @@ struct PlaneMotion {
   std::vector<Eigen::Vector3d> tau;                      ///< one per frame, -p_wc
   std::vector<Eigen::Matrix3d> R_wc;                     ///< one per frame
   Eigen::Vector3d bias_rad_s = Eigen::Vector3d::Zero();  ///< if the rotations depend on it
-  double time_offset_s = 0;  ///< added to the gyroscope's offset, if the rotations depend on it
+  /// Added to the offset of the gyroscope's clock, if the rotations depend on it.
+  double time_offset_correction_s = 0;
   /// Integrated noise, one per frame: the corrected rotation is multiplied by exp(this). Empty if
   /// the gyroscope noise is not an unknown.
   std::vector<Eigen::Vector3d> gyro_noise_rad = {};

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/methods/plane/plane_weights.h"
 
+#include "engine/geometry/statistics.h"
+
 #include <algorithm>
 #include <cmath>
 
@@ -12,36 +14,26 @@ namespace gpo {
 namespace {
 
 using Eigen::Matrix2d;
-using Eigen::Matrix3d;
 using Eigen::Vector2d;
 using Eigen::Vector3d;
-
-/// Returns dp_i/dp_1, the slope of the homography at the point.
-Matrix2d slope(const FrameState& state, const Transfer& transfer) {
-  const Matrix3d A = state.R_cw - state.tau_c * state.normal.transpose();
-  return transfer.d_y * A.leftCols<2>() * Vector2d(1 / state.fx, 1 / state.fy).asDiagonal();
-}
-
-double huber_weight(double length_px, double sigma_px) {
-  return std::min(1.0, kHuberSigmas * sigma_px / std::max(length_px, 1e-12));
-}
 
 void reweigh_frame(const FrameState& state,
                    const MethodOptions& options,
                    double sigma_px,
                    FrameObservations& f) {
   const bool sampson = options.error == ErrorModel::sampson;
+  const double knee_px = kHuberSigmas * sigma_px;
   if (sampson) f.weight.assign(f.count, Matrix2d::Identity());
   for (int k = 0; k < f.count; ++k) {
     const Vector2d r = transfer_error_px(f, state, k);
     if (!sampson) {
-      f.mask[k] = std::sqrt(huber_weight(r.norm(), sigma_px));
+      f.mask[k] = std::sqrt(huber_weight(r.norm(), knee_px));
       continue;
     }
-    const Matrix2d J = slope(state, transfer_of(f, state, k));
+    const Matrix2d J = transfer_of(f, state, k).d_reference(state);
     f.weight[k] = 2 * (Matrix2d::Identity() + J * J.transpose()).inverse();
     if (options.loss == Loss::huber)
-      f.weight[k] *= huber_weight(std::sqrt(r.dot(f.weight[k] * r)), sigma_px);
+      f.weight[k] *= huber_weight(std::sqrt(r.dot(f.weight[k] * r)), knee_px);
   }
 }
 

@@ -17,7 +17,6 @@ namespace gpo {
 namespace {
 
 using Eigen::Index;
-using Eigen::Matrix3d;
 using Eigen::MatrixXd;
 using Eigen::Vector3d;
 using Eigen::VectorXd;
@@ -210,20 +209,21 @@ std::vector<Velocity> smooth_velocities(const PathTimes& times,
                                         const PlaneMotion& motion,
                                         const PathNoise& noise) {
   const auto n = std::ssize(motion.tau);
+  // The integral of the rates in the camera's axes, which a logarithm of the whole rotation is only
+  // for small ones.
   MatrixXd path(n, 6);
+  Vector3d turned_rad = Vector3d::Zero();
   for (Index i = 0; i < n; ++i) {
-    path.row(i) << motion.tau[i].transpose(),
-        so3_log(motion.R_wc[0].transpose() * motion.R_wc[i]).transpose();
+    if (i > 0) turned_rad += so3_log(motion.R_wc[i - 1].transpose() * motion.R_wc[i]);
+    path.row(i) << motion.tau[i].transpose(), turned_rad.transpose();
   }
   VectorXd sigmas(6);
   sigmas << Vector3d::Constant(noise.tau), Vector3d::Constant(noise.rotation_rad);
   const auto [first, second, sigma] = smooth_derivatives(times, path, sigmas);
   std::vector<Velocity> velocities(n);
   for (Index i = 0; i < n; ++i) {
-    const Matrix3d J = so3_right_jacobian(path.row(i).tail<3>());
-    // The derivative of J is of second order in the rotation's rate.
-    velocities[i] = {J * first.row(i).tail<3>().transpose(),
-                     J * second.row(i).tail<3>().transpose(),
+    velocities[i] = {first.row(i).tail<3>(),
+                     second.row(i).tail<3>(),
                      first.row(i).head<3>(),
                      second.row(i).head<3>(),
                      sigma.row(i).tail<3>().norm() / std::sqrt(3.0),

@@ -29,7 +29,9 @@ Initialization complete_result() {
   result.solver.trace = {{.normal = Eigen::Vector3d::UnitZ()}};
   result.transfer_rms_px = result.reprojection_rms_px = 1;
   result.bias_rad_s = Eigen::Vector3d::Zero();
-  result.time_offset_s = result.row_delay_s = 0;
+  result.time_offset_s = result.time_offset_correction_s = result.row_delay_s = 0;
+  result.lens_residual = LensResidual{};
+  result.lens_residual->coefficients_px.setZero();
   result.own_noise = {.centers = {Eigen::Matrix3d::Zero()}, .distance_ratios = {1}};
   Uncertainty u;
   u.bend_sigma_deg = u.neighbors_sigma_deg = u.clock_sigma_deg = u.late_s = u.shutter_sigma_deg = 0;
@@ -83,7 +85,10 @@ std::vector<Field<Initialization>> fields_of_result() {
       {"reprojection_rms_px", [](R& r, double x) { r.reprojection_rms_px = x; }},
       {"bias_rad_s", [](R& r, double x) { r.bias_rad_s->x() = x; }},
       {"time_offset_s", [](R& r, double x) { r.time_offset_s = x; }},
+      {"time_offset_correction_s", [](R& r, double x) { r.time_offset_correction_s = x; }},
       {"row_delay_s", [](R& r, double x) { r.row_delay_s = x; }},
+      {"lens_residual.coefficients_px",
+       [](R& r, double x) { r.lens_residual->coefficients_px(6, 1) = x; }},
       {"own_noise.normal", [](R& r, double x) { r.own_noise->normal(0, 0) = x; }},
       {"own_noise.centers[0]", [](R& r, double x) { r.own_noise->centers[0](0, 0) = x; }},
       {"own_noise.distance_ratios[0]", [](R& r, double x) { r.own_noise->distance_ratios[0] = x; }},

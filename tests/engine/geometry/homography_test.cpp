@@ -208,6 +208,19 @@ TEST(Decomposition, FeasibleMotionsContainTruthAndPointsBehindCamerasAreCounted)
   EXPECT_EQ(points_behind({I, Vector3d(0, 0, -1.5), facing}, rays), 2);  // beyond the plane
 }
 
+TEST(Decomposition, OnePointOverTheHorizonOfAFloorDoesNotRejectTheTrueMotion) {
+  const HomographyMotion truth{so3_exp({0.02, -0.05, 0.01}), {0.3, 0, 0.4}, {0, -1, 0}};
+  const Matrix3d K = Vector3d(500, 500, 1).asDiagonal();
+  Eigen::Matrix2Xd visible_px(2, 100);
+  for (int j = 0; j < 100; ++j) visible_px.col(j) << -250 + 5 * j, 5 + 2 * j;
+  const Matrix3d H = K * homography_of(truth) * K.inverse();
+  for (const int beyond : {0, 1, 3}) {
+    visible_px.row(1).head(beyond).setConstant(-0.5);
+    const double error = nearest(decompose_homography(H, K, visible_px), truth);
+    EXPECT_EQ(error < 1e-9, beyond <= 2) << beyond;
+  }
+}
+
 constexpr double kDelta = 1e-6;
 
 struct TransferCase {

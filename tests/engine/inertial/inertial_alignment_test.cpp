@@ -45,6 +45,18 @@ TEST(InertialAlignment, IsExactWithoutNoise) {
   }
 }
 
+TEST(InertialAlignment, AddsTheCorrectionToTheRecordedOffset) {
+  auto made = simulated_alignment(Pace::brisk, kPhone, 2, 21, 0);
+  const InertialAlignment without = aligned(made);
+  for (std::int64_t& t_ns : made.gyroscope.timestamps_ns) t_ns += 25'000'000;
+  made.gyroscope.time_offset_ns = 20'000'000;
+  made.poses.time_offset_correction_s = 0.005;
+  const InertialAlignment with = aligned(made);
+  ASSERT_TRUE(with.ok) << with.reason;
+  EXPECT_EQ(with.gravity_m_s2, without.gravity_m_s2);
+  EXPECT_EQ(with.scale, without.scale);
+}
+
 void for_each_kind(const auto& test) {
   for (const SimulatedSensor& sensor : {kPhone, kEuroc})
     for (const Pace pace : {Pace::gentle, Pace::brisk})

@@ -1,10 +1,11 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/geometry/statistics.h"
-#include "engine/methods/uncertainty/information.h"
-#include "engine/methods/uncertainty/uncertainty.h"
+#include "engine/inertial/inertial_alignment.h"
 #include "engine/methods/initializers.h"
 #include "engine/methods/methods.h"
+#include "engine/methods/uncertainty/information.h"
+#include "engine/methods/uncertainty/uncertainty.h"
 #include "tests/engine/methods/method_cases.h"
 
 #include <functional>
@@ -240,6 +241,27 @@ TEST(GpoJoint, FindsOffsetBetweenClocks) {
   const double mean = squares / static_cast<double>(errors_s.size());
   EXPECT_GT(mean, 0.4);
   EXPECT_LT(mean, 2);
+}
+
+TEST(GpoJoint, AddsTheFoundOffsetBetweenClocksToTheRecordedOne) {
+  SimulationOptions options{
+      .motion = Motion::wander, .gyro_bias_rad_s = 0.002, .gyro_offset_s = 0.005, .seed = 2};
+  const auto solved = [&] {
+    const Window window = simulate_fitted(options).window;
+    const Initialization result =
+        successful(initialize_gpo_joint(window, {.shutter = Shutter::global}, {}));
+    EXPECT_EQ(uncertain_poses(window, result).time_offset_correction_s,
+              result.time_offset_correction_s.value());
+    return result;
+  };
+  const Initialization of_zero = solved();
+  options.gyro_offset_s += 0.02;
+  options.recorded_offset_s = 0.02;
+  const Initialization recorded = solved();
+  EXPECT_NEAR(of_zero.time_offset_s.value(), 0.005, 0.003);
+  EXPECT_EQ(*of_zero.time_offset_s, of_zero.time_offset_correction_s.value());
+  EXPECT_NEAR(*recorded.time_offset_s, *of_zero.time_offset_s + 0.02, 1e-9);
+  EXPECT_NEAR(recorded.time_offset_correction_s.value(), *of_zero.time_offset_s, 1e-9);
 }
 
 TEST(GpoJoint, HuberLossResistsTracksThatSlip) {

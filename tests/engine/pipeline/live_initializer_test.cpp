@@ -1,5 +1,6 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
+#include "engine/base/stop.h"
 #include "engine/geometry/pose.h"
 #include "engine/initialize.h"
 #include "engine/live.h"
@@ -190,6 +191,22 @@ TEST(LiveInitializer, CanBeDestroyedWhileSolving) {
   LiveInitializer initializer(camera);
   for (const Frame& frame : frames) initializer.add_frame(frame);
 }  // the destructor does not wait for pending windows
+
+TEST(LiveInitializer, StopsWithTheThreadOfItsCaller) {
+  const auto [camera, frames] = moving(5);
+  std::stop_source source;
+  auto method = std::make_shared<Method>(find_method("gpo"));
+  method->initialize = [&](const auto&...) {
+    source.request_stop();
+    check_stop();
+    return Initialization{};
+  };
+  const StopWatch watch{.stop = source.get_token()};
+  const StopScope scope(&watch);
+  LiveOptions options{.background = false};
+  options.initialize.method = MethodChoice(method);
+  EXPECT_THROW(fed(camera, frames, options), Stopped);
+}
 
 TEST(LiveInitializer, RejectsTheSameInputAsAWindow) {
   const Simulated few = moving(5, 4);

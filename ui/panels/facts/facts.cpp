@@ -259,8 +259,10 @@ ResultGroup uncertainty_group(const Inspection& inspection) {
              u.time_offset_sigma_s
                  ? uncertain_text(1e3 * *result.time_offset_s, 1e3 * *u.time_offset_sigma_s) + " ms"
                  : milliseconds_text(1e3 * *result.time_offset_s),
-         .tooltip = "Estimated offset, with its standard deviation: gyroscope "
-                    "time = camera time + offset"});
+         .tooltip = fmt::format("Estimated offset, with its standard deviation: gyroscope time = "
+                                "camera time + offset. It differs by {:+.2f} ms from the recorded "
+                                "one",
+                                1e3 * result.time_offset_correction_s.value_or(0))});
   group.rows.push_back(
       bound_row("Bound, known R", u.bound_known_rotations_deg, "if the rotations are exact", why));
   group.rows.push_back(

@@ -165,20 +165,81 @@ TEST(JointScales, FindTheNoiseOfTheReferenceFrame) {
   }
 }
 
-TEST(JointScales, FindALensResidual) {
-  Simulation simulation = simulate(noisy(Motion::orbit, 13));
-  const auto without = joint::solve(simulation.window, true_motion(simulation), {}, {});
+/// Tracks that have another place in the reference frame do not count.
+TEST(JointScales, FindTheNoiseOfTheReferenceFrameDespiteSlips) {
+  Simulation simulation = simulate(noisy(Motion::orbit, 12));
+  for (int j = 0; j < 15; ++j) simulation.window.points_px[0](j % 2, 10 * j) += 4;
+  const auto solution = joint::solve(simulation.window, true_motion(simulation), {}, {});
+  ASSERT_TRUE(solution);
+  EXPECT_NEAR(solution->scales.sigma_px, 0.5, 0.05);
+  EXPECT_NEAR(solution->scales.reference_px, 0.5, 0.1);
+}
+
+/// Adds an error of 1 px at the corners that no parameter of the lens describes.
+Simulation with_lens_residual(Simulation simulation) {
   for (Eigen::Matrix2Xd& points : simulation.window.points_px)
     for (Eigen::Index j = 0; j < points.cols(); ++j) {
       const Eigen::Vector2d p = (points.col(j) - Eigen::Vector2d(319.5, 239.5)) / 400;
       points.col(j) += p * p.squaredNorm();
     }
+  return simulation;
+}
+
+TEST(JointScales, FindALensResidual) {
+  Simulation simulation = simulate(noisy(Motion::orbit, 13));
+  const auto without = joint::solve(simulation.window, true_motion(simulation), {}, {});
+  simulation = with_lens_residual(std::move(simulation));
   const auto with = joint::solve(simulation.window, true_motion(simulation), {}, {});
   ASSERT_TRUE(with && without);
   EXPECT_LT(without->scales.lens_px, 0.2);
   EXPECT_GE(with->scales.lens_px, 0.2);
   EXPECT_GT(with->uncertainty.normal_sigma_deg, without->uncertainty.normal_sigma_deg);
   EXPECT_LT(angle_deg(with->motion.normal, simulation.plane.normal), 0.3);
+}
+
+TEST(JointSolution, TakesTheLensResidualOutOfThePoints) {
+  for (int k = 0; k < 4; ++k) {
+    const Simulation exact = simulate(noisy(kJointMotions[k], 13 + k));
+    const Simulation bent = with_fitted_homographies(with_lens_residual(exact));
+    const Initialization without = initialize_gpo_joint(exact.window, kLatent, {});
+    const Initialization with = initialize_gpo_joint(bent.window, kLatent, {});
+    ASSERT_TRUE(with.ok && with.lens_residual) << k << with.reason;
+    EXPECT_LT(*with.transfer_rms_px, 1.02 * *without.transfer_rms_px) << k;
+    EXPECT_LT(*with.reprojection_rms_px, 1.02 * *without.reprojection_rms_px) << k;
+  }
+}
+
+/// Poses and points are those of one row delay also where it is too small to be reported.
+TEST(JointSolution, MovesPointsByAnInsignificantRowDelay) {
+  const MethodOptions global{.error = ErrorModel::latent, .shutter = Shutter::global};
+  double with_px2 = 0, without_px2 = 0;
+  for (int k = 0; k < 12; ++k) {
+    SimulationOptions options = noisy(kJointMotions[k % 4], 300 + k);
+    options.row_delay_s = 1e-6;
+    const Simulation simulation = simulate_fitted(options);
+    const Initialization unknown = initialize_gpo_joint(simulation.window, kLatent, {});
+    const Initialization without = initialize_gpo_joint(simulation.window, global, {});
+    ASSERT_TRUE(unknown.ok && without.ok) << unknown.reason << without.reason;
+    if (unknown.row_delay_s) continue;
+    with_px2 += std::pow(*unknown.reprojection_rms_px, 2);
+    without_px2 += std::pow(*without.reprojection_rms_px, 2);
+  }
+  EXPECT_GT(with_px2, 0);
+  EXPECT_LT(with_px2, without_px2);
+}
+
+TEST(JointSolution, TakesAnyNumberOfLensErrors) {
+  Simulation simulation = simulate_fitted(noisy(Motion::orbit, 23));
+  auto focal = typical_lens_moves_px(simulation.window).front();
+  const auto sigma_deg = [&](std::size_t count) {
+    simulation.window.lens_moves_px.assign(count, focal);
+    const Initialization result = initialize_gpo_joint(simulation.window, kLatent, {});
+    EXPECT_TRUE(result.ok) << result.reason;
+    return result.uncertainty->normal_sigma_deg;
+  };
+  const double one = sigma_deg(1);
+  for (Eigen::Matrix2Xd& moves : focal) moves /= 10;
+  EXPECT_NEAR(sigma_deg(100), one, 1e-4 * one);
 }
 
 /// A focal length and a radial distortion that are wrong by their standard deviations.
@@ -307,6 +368,39 @@ TEST(SmoothPath, ClaimsTheErrorsOfVelocitiesOfExactPoses) {
   }
   EXPECT_NEAR(interior, 1.1, 0.3);
   EXPECT_NEAR(ends, 1.1, 0.3);
+}
+
+/// A roll by more than half a turn, about an axis that the camera also moves along.
+TEST(SmoothPath, FollowsRotationsBeyondHalfATurn) {
+  const VectorXd t = VectorXd::LinSpaced(40, 0, 39 / 30.0);
+  const Eigen::Vector3d rate_rad_s(0.3, -0.2, 3.6);
+  PlaneMotion motion;
+  for (const double seconds : t) {
+    motion.R_wc.push_back(so3_exp(seconds * rate_rad_s));
+    motion.tau.emplace_back(0.1 * seconds * Eigen::Vector3d::UnitZ());
+  }
+  for (const double noise : {0.0, 1e-4})
+    for (const Velocity& velocity : smooth_velocities(path_times(t), motion, {noise, noise})) {
+      EXPECT_LT((velocity.rotation_rad_s - rate_rad_s).norm(), 1e-6);
+      EXPECT_LT(velocity.rotation_rad_s2.norm(), 1e-4);
+    }
+}
+
+/// Rates that change their axis and size: the error is of second order in the time between frames.
+TEST(SmoothPath, FollowsRotationsAboutChangingAxes) {
+  const VectorXd t = VectorXd::LinSpaced(40, 0, 39 / 30.0);
+  const auto rotation = [](double seconds) {
+    return Eigen::Matrix3d(so3_exp({0, std::sin(3 * seconds), 0}) * so3_exp({0, 0, 2 * seconds}));
+  };
+  PlaneMotion motion;
+  for (const double seconds : t) motion.R_wc.push_back(rotation(seconds));
+  motion.tau.resize(motion.R_wc.size(), Eigen::Vector3d::Zero());
+  const auto velocities = smooth_velocities(path_times(t), motion, {});
+  for (int i = 5; i < 35; ++i) {
+    constexpr double kStep_s = 1e-5;
+    const Eigen::Matrix3d step = rotation(t(i) - kStep_s).transpose() * rotation(t(i) + kStep_s);
+    EXPECT_LT((velocities[i].rotation_rad_s - so3_log(step) / (2 * kStep_s)).norm(), 0.005) << i;
+  }
 }
 
 /// A hand that trembles at 6 Hz, in images at 20 Hz: the parabola through five values is wrong by

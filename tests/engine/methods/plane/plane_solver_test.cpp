@@ -367,12 +367,12 @@ TEST(GyroColumns, MatchFiniteDifferences) {
   const int frame = 17;
   PlaneMotion motion = motion_without_translation(truth.window);
   motion.bias_rad_s += Vector3d(0.3, -0.2, 0.1);
-  motion.time_offset_s = 0.1;
+  motion.time_offset_correction_s = 0.1;
   motion.gyro_noise_rad.assign(truth.window.frame_count(), Vector3d(0.2, -0.3, 0.1));
   const GyroColumns columns = gyro_columns(truth.window, motion, frame, 4);
   const auto rotation = [&](int unknown, double step) {
     PlaneMotion moved = motion;
-    (unknown == 3 ? moved.time_offset_s : moved.bias_rad_s[unknown]) += step;
+    (unknown == 3 ? moved.time_offset_correction_s : moved.bias_rad_s[unknown]) += step;
     return gyro_rotation(truth.window, frame, moved);
   };
   constexpr double kStep = 1e-5;
