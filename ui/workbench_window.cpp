@@ -347,8 +347,10 @@ Commands WorkbenchHost::draw(double delta_seconds) {
   shown.example = link.example;
   Commands commands = draw_workbench(shown, size, gui_, views_, delta_seconds);
   const std::string& error = views_.model.value.error;
-  if (error != std::exchange(model_error_, error) && !error.empty())
-    say(state, "model: " + error, Severity::error);
+  if (error != model_error_) {
+    retract_error(state, "model: " + std::exchange(model_error_, error));
+    if (!error.empty()) say(state, "model: " + error, Severity::error);
+  }
   return commands;
 }
 

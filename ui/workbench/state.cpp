@@ -91,6 +91,11 @@ void say(WorkbenchState& state, const std::string& text, Severity severity) {
     state.messages.lines.erase(state.messages.lines.begin());
 }
 
+void retract_error(WorkbenchState& state, const std::string& text) {
+  MessageLog& messages = state.messages;
+  if (messages.severity == Severity::error && messages.text == text) messages.text.clear();
+}
+
 std::optional<double> seconds_of_message(const WorkbenchState& state) {
   constexpr double kShown_s = 12;
   if (state.messages.text.empty()) return std::nullopt;

@@ -261,6 +261,8 @@ struct WorkbenchState {
 };
 
 void say(WorkbenchState& state, const std::string& text, Severity severity = Severity::note);
+/// Clears the message line if it shows this error, whose cause is gone. The log keeps it.
+void retract_error(WorkbenchState& state, const std::string& text);
 /// Time for which the message is still shown, infinite for errors; nullopt if there is none.
 std::optional<double> seconds_of_message(const WorkbenchState& state);
 

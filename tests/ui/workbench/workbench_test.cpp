@@ -325,6 +325,17 @@ TEST(Workbench, RansacSwitchedTwiceIsTheDefaultAgain) {
   EXPECT_EQ(settings, first);
 }
 
+TEST(Workbench, AnErrorIsRetractedOnlyIfItIsShown) {
+  WorkbenchState state = opened(60);
+  say(state, "saved");
+  say(state, "cannot be read", Severity::error);
+  retract_error(state, "another one");
+  EXPECT_EQ(state.messages.text, "cannot be read");
+  retract_error(state, "cannot be read");
+  EXPECT_EQ(state.messages.text, "");
+  EXPECT_EQ(state.messages.lines.size(), 2U) << "the log keeps it";
+}
+
 TEST(Workbench, NotesVanishAndErrorsStay) {
   WorkbenchState state = opened(60);
   say(state, "saved");
