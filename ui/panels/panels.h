@@ -119,16 +119,8 @@ struct PanelInput {
 
   /// Returns the last finished inspection; null if none.
   const Inspection* inspection() const { return state.results.inspection.get(); }
-  PanelInput with(const WorkbenchState& other) const {
-    return {.state = other,
-            .worker = worker,
-            .survey = survey,
-            .timings = timings,
-            .fetcher = fetcher,
-            .models = models,
-            .opening = opening,
-            .scale = scale};
-  }
+  /// Returns the same input with another state.
+  PanelInput with(const WorkbenchState& other) const;
 };
 
 /// A text field with a list of what matches it: the command palette, the file browser.
