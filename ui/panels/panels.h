@@ -178,6 +178,7 @@ struct Views {
   float verdict_height = 0, settings_height = 0;  ///< content heights [px]; 0: unknown
   std::vector<ContextSubject> context;            ///< subjects of the open context menu
   bool opens_context = false;                     ///< its menu opens in this frame
+  Rectangle settings;                             ///< place of the settings in the last frame
 };
 
 struct PanelContext : PanelInput {
