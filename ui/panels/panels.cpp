@@ -249,6 +249,11 @@ Vector2d drag_px() {
   return {ImGui::GetIO().MouseDelta.x, ImGui::GetIO().MouseDelta.y};
 }
 
+double current_drag() {
+  const ImGuiIO& io = ImGui::GetIO();
+  return io.MouseDown[ImGuiMouseButton_Left] ? io.MouseClickedTime[ImGuiMouseButton_Left] : 0;
+}
+
 bool is_item_double_clicked() {
   return ImGui::IsItemHovered() && ImGui::IsMouseDoubleClicked(ImGuiMouseButton_Left);
 }

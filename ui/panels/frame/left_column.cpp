@@ -181,7 +181,7 @@ void cube_row(const SettingRows& rows) {
   const char* format = side > 0 ? "%.2f d" : "automatic";
   if (ImGui::DragScalar(
           "##cube_side", ImGuiDataType_Double, &side, 0.002F, &least, &most, format, kClamped))
-    push(rows.ui.commands, SetCubeSide{side});
+    push(rows.ui.commands, SetCubeSide{side, current_drag()});
   tooltip(help + kDrag);
 }
 
