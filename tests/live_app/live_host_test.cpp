@@ -15,6 +15,7 @@
 #include <chrono>
 #include <thread>
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <opencv2/imgproc.hpp>
 
@@ -268,7 +269,7 @@ Recording small_frozen() {
     return half;
   });
   frozen.camera = camera_of_view(frozen.camera.width / 2, frozen.camera.height / 2);
-  frozen.camera_source = CameraSource::guess;
+  frozen.camera_source = CameraSource::self_calibrated;
   frozen.gyroscope.reset();
   frozen.layout = kLiveLayout;
   frozen.name = "camera:0";
@@ -278,22 +279,16 @@ Recording small_frozen() {
 TEST(LiveCalibration, IsDiscardedFromTheCacheOfItsDevice) {
   const TestFolder folder;
   setenv("XDG_CACHE_HOME", folder.path().c_str(), 1);
-  Recording frozen = small_frozen();
-  const auto calibrate = [&] {
-    const auto opened = opened_for_window(std::make_shared<const Recording>(frozen));
-    return opened.calibrate({}, [](const std::string&, int, int) {});
-  };
-  const auto first = calibrate();
-  const auto file =
-      std::filesystem::directory_iterator(folder.path() / "gpo-inspector/cameras")->path();
-  first.undo_calibration();
-  EXPECT_FALSE(is_file(file)) << "there was none before";
+  const auto frozen = std::make_shared<const Recording>(small_frozen());
+  const std::string key =
+      fmt::format("camera:0 {}x{}", frozen->camera.width, frozen->camera.height);
   const std::string earlier = "# of another day\n";
-  write_file(file, earlier);
-  frozen.camera_source = CameraSource::self_calibrated;
-  const auto again = calibrate();
+  const auto file =
+      folder.write(fmt::format("gpo-inspector/cameras/live-{:016x}.yaml", fnv1a(key)), earlier);
+  const auto opened = opened_for_window(frozen);
+  const auto calibrated = opened.calibrate({}, [](const std::string&, int, int) {});
   EXPECT_NE(read_file(file), earlier);
-  again.undo_calibration();
+  calibrated.undo_calibration();
   EXPECT_EQ(read_file(file), earlier);
 }
 
