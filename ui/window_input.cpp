@@ -35,6 +35,7 @@ bool is_command(const InputEvent& event) {
 /// Drops the event if there is no `WindowInput` any more.
 void queue_event(GLFWwindow* window, InputEvent event) {
   auto* queue = static_cast<InputQueue*>(glfwGetWindowUserPointer(window));
+  event.time_s = glfwGetTime();
   if (queue != nullptr) queue->push(std::move(event));
 }
 
@@ -48,27 +49,6 @@ void on_pointer(GLFWwindow* window, double x, double y) {
   queue_event(window, {.kind = Kind::pointer, .x = x, .y = y});
 }
 
-void hand_to_imgui(GLFWwindow* window, const InputEvent& event) {
-  switch (event.kind) {
-    case Kind::key:
-      return hand_key_to_imgui(window, event.code, event.scancode, event.action, event.modifiers);
-    case Kind::character:
-      return ImGui_ImplGlfw_CharCallback(window, event.character);
-    case Kind::button:
-      return ImGui_ImplGlfw_MouseButtonCallback(window, event.code, event.action, event.modifiers);
-    case Kind::scroll:
-      return ImGui_ImplGlfw_ScrollCallback(window, event.x, event.y);
-    case Kind::pointer:
-      return hand_pointer_to_imgui(window, event.x, event.y);
-    case Kind::enter:
-      return ImGui_ImplGlfw_CursorEnterCallback(window, event.code);
-    case Kind::focus:
-      return ImGui_ImplGlfw_WindowFocusCallback(window, event.code);
-    case Kind::drop:
-      return;
-  }
-}
-
 /// Returns whether an open overlay has a text field that takes all keys.
 bool has_field(const WorkbenchState& state) {
   return state.view.palette || state.view.browse || state.view.sources;
@@ -78,7 +58,38 @@ bool popup_is_open() {
   return ImGui::IsPopupOpen("", ImGuiPopupFlags_AnyPopupId | ImGuiPopupFlags_AnyPopupLevel);
 }
 
+bool is_letter_or_digit(int key) {
+  return (key >= GLFW_KEY_A && key <= GLFW_KEY_Z) || (key >= GLFW_KEY_0 && key <= GLFW_KEY_9);
+}
+
+/// Returns the action of a key by the layout; without one, that of a digit by its place: a French
+/// layout has other characters there.
+const Action* action_of_press(const InputEvent& event) {
+  const bool shift = (event.modifiers & GLFW_MOD_SHIFT) != 0;
+  const bool control = (event.modifiers & GLFW_MOD_CONTROL) != 0;
+  const Action* found = action_of_key(event.layout_key, shift, control);
+  const bool digit = event.code >= GLFW_KEY_0 && event.code <= GLFW_KEY_9;
+  return found == nullptr && digit ? action_of_key(event.code, shift, control) : found;
+}
+
+/// Returns the character whose action a key runs: the typed one or, if that has no action, what a
+/// US keyboard has at the place of a digit, and of a letter that is not Latin.
+char32_t character_for_shortcut(char32_t typed, int place, const WorkbenchState& state) {
+  const bool digit = place >= GLFW_KEY_0 && place <= GLFW_KEY_9;
+  const bool foreign = typed > 0x7F && is_letter_or_digit(place);
+  if (action_of_character(typed, &state) != nullptr || !(digit || foreign)) return typed;
+  return static_cast<char32_t>(place);
+}
+
 }  // namespace
+
+int key_in_layout(int place, std::string_view name) {
+  if (place < GLFW_KEY_SPACE || place > GLFW_KEY_WORLD_2 || name.empty()) return place;
+  const auto first = static_cast<unsigned char>(name.front());
+  if (name.size() == 1 && first < 0x80)
+    return first >= 'a' && first <= 'z' ? first - 'a' + GLFW_KEY_A : first;
+  return is_letter_or_digit(place) ? place : GLFW_KEY_UNKNOWN;
+}
 
 bool types(const InputEvent& event) {
   constexpr int kCommands = GLFW_MOD_CONTROL | GLFW_MOD_ALT | GLFW_MOD_SUPER;
@@ -129,7 +140,14 @@ InputEvent InputQueue::take() {
 WindowInput::WindowInput(GLFWwindow* window) : window_(window) {
   glfwSetWindowUserPointer(window, &queue_);
   glfwSetKeyCallback(window, [](GLFWwindow* w, int key, int scancode, int action, int modifiers) {
-    queue_event(w, {Kind::key, key, scancode, action, modifiers});
+    const char* name = glfwGetKeyName(key, scancode);
+    queue_event(w,
+                {.kind = Kind::key,
+                 .code = key,
+                 .scancode = scancode,
+                 .action = action,
+                 .modifiers = modifiers,
+                 .layout_key = key_in_layout(key, name != nullptr ? name : "")});
   });
   glfwSetCharCallback(window, [](GLFWwindow* w, unsigned codepoint) {
     queue_event(w, {.kind = Kind::character, .character = codepoint});
@@ -177,44 +195,92 @@ Commands WindowInput::dispatch(const WorkbenchState& state) {
   frames_without_field_ = waits ? frames_without_field_ + 1 : 0;
   while (queue_.has_next(listener(state))) {
     const InputEvent event = queue_.take();
-    hand_to_imgui(window_, event);
+    const Listener before = listener(state);
+    if (before == Listener::field) keys_.note_field(event);
+    hand_to_imgui(event);
     if (event.kind == Kind::drop) push_drop(event, commands);
-    if (event.kind == Kind::key) handle_key(event, state, commands);
-    if (event.kind == Kind::character) handle_character(event, state, commands);
+    const bool opens_field =
+        (event.kind == Kind::key && keys_.press(event, before, state, commands)) ||
+        (event.kind == Kind::character && keys_.type(event, before, state, commands));
+    if (opens_field) queue_.end_frame();
   }
   return commands;
 }
 
-void WindowInput::handle_key(const InputEvent& event,
-                             const WorkbenchState& state,
-                             Commands& commands) {
-  const auto held = [&](int modifier) { return (event.modifiers & modifier) != 0; };
-  repeating_ = event.action == GLFW_REPEAT;
-  shortcut_ = held(GLFW_MOD_CONTROL | GLFW_MOD_ALT | GLFW_MOD_SUPER);
-  const bool escape = event.code == GLFW_KEY_ESCAPE;
-  // Esc closes a menu before anything else; in a field Dear ImGui reverts the text.
-  if (escape && event.action != GLFW_RELEASE && popup_is_open()) return close_popups();
-  const bool typed = ImGui::GetIO().WantTextInput && !(escape && has_field(state));
-  const bool of_popup = popup_is_open() && types(event);
-  if (held(GLFW_MOD_ALT | GLFW_MOD_SUPER) || typed || of_popup) return;
-  const Action* found = action_of_key(event.code, held(GLFW_MOD_SHIFT), held(GLFW_MOD_CONTROL));
-  if (found == nullptr || (repeating_ && !found->repeats)) return;
-  if (found->held) {
-    push(commands, RunAction{found->name + (event.action == GLFW_RELEASE ? " off" : " on")});
-  } else if (event.action != GLFW_RELEASE) {
-    push(commands, RunAction{found->name});
-    if (found->opens_field) queue_.end_frame();
+void WindowInput::hand_to_imgui(const InputEvent& event) {
+  switch (event.kind) {
+    case Kind::key: {
+      // A key is released as it was pressed, even if the layout has changed.
+      int& key = imgui_keys_.try_emplace(event.code, event.code).first->second;
+      if (event.action != GLFW_RELEASE) key = key_for_imgui(event.code, event.layout_key);
+      return hand_key_to_imgui(window_, key, event.scancode, event.action, event.modifiers);
+    }
+    case Kind::character:
+      return ImGui_ImplGlfw_CharCallback(window_, event.character);
+    case Kind::button:
+      return ImGui_ImplGlfw_MouseButtonCallback(window_, event.code, event.action, event.modifiers);
+    case Kind::scroll:
+      return ImGui_ImplGlfw_ScrollCallback(window_, event.x, event.y);
+    case Kind::pointer:
+      return hand_pointer_to_imgui(window_, event.x, event.y);
+    case Kind::enter:
+      return ImGui_ImplGlfw_CursorEnterCallback(window_, event.code);
+    case Kind::focus:
+      return ImGui_ImplGlfw_WindowFocusCallback(window_, event.code);
+    case Kind::drop:
+      return;
   }
 }
 
-void WindowInput::handle_character(const InputEvent& event,
-                                   const WorkbenchState& state,
-                                   Commands& commands) {
-  if (shortcut_ || listener(state) != Listener::shortcuts) return;
-  const Action* found = action_of_character(event.character, &state);
-  if (found == nullptr || (repeating_ && !found->repeats)) return;
+bool KeyCommands::press(const InputEvent& event,
+                        Listener listener,
+                        const WorkbenchState& state,
+                        Commands& commands) {
+  const auto with = [&](int modifier) { return (event.modifiers & modifier) != 0; };
+  place_ = event.code;
+  repeating_ = event.action == GLFW_REPEAT;
+  shortcut_ = with(GLFW_MOD_CONTROL | GLFW_MOD_ALT | GLFW_MOD_SUPER);
+  if (event.action == GLFW_RELEASE) {
+    // Other modifiers may be down by now, and a field or a menu may be open.
+    const auto held = held_.find(event.code);
+    if (held == held_.end()) return false;
+    push(commands, RunAction{held->second->name + " off"});
+    held_.erase(held);
+    return false;
+  }
+  const bool escape = event.code == GLFW_KEY_ESCAPE;
+  // Esc closes a menu before anything else; in a field Dear ImGui reverts the text.
+  if (escape && popup_is_open()) return close_popups(), false;
+  const bool typed = listener == Listener::field && !(escape && has_field(state));
+  const bool of_popup = listener == Listener::popup && types(event);
+  if (with(GLFW_MOD_ALT | GLFW_MOD_SUPER) || typed || of_popup) return false;
+  const Action* found = action_of_press(event);
+  if (found == nullptr) return false;
+  shortcut_ = true;  // a digit of the keypad types a character, too
+  if (repeating_ && !found->repeats) return false;
+  if (found->held) {
+    held_[event.code] = found;
+    push(commands, RunAction{found->name + " on"});
+    return false;
+  }
   push(commands, RunAction{found->name});
-  if (found->opens_field) queue_.end_frame();
+  return found->opens_field;
+}
+
+bool KeyCommands::type(const InputEvent& event,
+                       Listener listener,
+                       const WorkbenchState& state,
+                       Commands& commands) {
+  constexpr double kAfterField_s = 1;
+  if (shortcut_ || listener != Listener::shortcuts) return false;
+  const char32_t character = character_for_shortcut(event.character, place_, state);
+  const bool digit = character >= U'0' && character <= U'9';
+  // The user may go on typing a number for a moment after the field has closed.
+  if (digit && field_s_ && event.time_s - *field_s_ < kAfterField_s) return false;
+  const Action* found = action_of_character(character, &state);
+  if (found == nullptr || (repeating_ && !found->repeats)) return false;
+  push(commands, RunAction{found->name});
+  return found->opens_field;
 }
 
 }  // namespace gpo

@@ -5,7 +5,9 @@
 #include "ui/workbench/actions/actions.h"
 
 #include <deque>
+#include <map>
 #include <set>
+#include <string_view>
 
 struct GLFWwindow;
 
@@ -18,14 +20,21 @@ struct InputEvent {
   enum class Kind { key, character, button, scroll, pointer, enter, focus, drop };
 
   Kind kind = Kind::key;
-  int code = 0;  ///< key or button; 1 if entered or focused; number of dropped files
+  int code = 0;  ///< key by its place, or button; 1 if entered or focused; number of dropped files
   int scancode = 0;
   int action = 0;     ///< GLFW_PRESS, GLFW_RELEASE, GLFW_REPEAT
   int modifiers = 0;  ///< GLFW_MOD_...
   char32_t character = 0;
   double x = 0, y = 0;    ///< pointer [framebuffer px], scroll
   std::string path = {};  ///< dropped file
+  int layout_key = 0;     ///< the key by what the keyboard layout has there, see `key_in_layout`
+  double time_s = 0;      ///< when it happened
 };
+
+/// Returns the key that has this place on a US keyboard, with GLFW's numbers, but named by the
+/// user's keyboard layout: Z for the place of Y on a German one. `name`: what the layout types
+/// there, UTF-8; empty if unknown. Letters and digits that are not Latin keep their place.
+int key_in_layout(int place, std::string_view name);
 
 /// Returns whether the key types a character; then a text field ignores its press and release.
 bool types(const InputEvent& event);
@@ -75,6 +84,30 @@ class InputQueue {
   int keys_wait_ = 0;  ///< frames, after an event that may have opened or closed a text field
 };
 
+/// Turns keys and characters into commands.
+class KeyCommands {
+ public:
+  /// Adds the command of a key. Returns whether it opens a text field.
+  bool press(const InputEvent& event,
+             Listener listener,
+             const WorkbenchState& state,
+             Commands& commands);
+  /// The same of a typed character.
+  bool type(const InputEvent& event,
+            Listener listener,
+            const WorkbenchState& state,
+            Commands& commands);
+  /// Notes an event of any kind while a text field has the keyboard.
+  void note_field(const InputEvent& event) { field_s_ = event.time_s; }
+
+ private:
+  std::map<int, const Action*> held_;  ///< actions that run until their key is released
+  int place_ = 0;                      ///< the key that types the next character
+  bool repeating_ = false;             ///< this key is held down
+  bool shortcut_ = false;              ///< this key is a shortcut, or Ctrl, Alt or Super is down
+  std::optional<double> field_s_;      ///< when a text field had the keyboard last
+};
+
 /// Passes keys, mouse and dropped files of a window to Dear ImGui, and turns them into commands.
 class WindowInput {
  public:
@@ -89,14 +122,13 @@ class WindowInput {
 
  private:
   Listener listener(const WorkbenchState& state);
-  void handle_key(const InputEvent& event, const WorkbenchState& state, Commands& commands);
-  void handle_character(const InputEvent& event, const WorkbenchState& state, Commands& commands);
+  void hand_to_imgui(const InputEvent& event);
 
   GLFWwindow* window_;
   InputQueue queue_;
-  int frames_without_field_ = 0;  ///< since a text field should have opened
-  bool repeating_ = false;        ///< the key of the next character is held down
-  bool shortcut_ = false;         ///< ... together with Ctrl, Alt or Super
+  KeyCommands keys_;
+  std::map<int, int> imgui_keys_;  ///< keys that are down, by place, as Dear ImGui knows them
+  int frames_without_field_ = 0;   ///< since a text field should have opened
 };
 
 }  // namespace gpo

@@ -314,6 +314,7 @@ void WorkbenchHost::synchronize() {
   gui_.set_zoom(state.view.text_zoom);
   if ((movie_ || state.requests.movie) && std::exchange(state.requests.cancel, false)) {
     movie_.reset();
+    apart_.reset();
     state.requests.movie.reset();
     say(state, "Movie canceled. The incomplete file was deleted");
   }
@@ -347,8 +348,10 @@ Commands WorkbenchHost::draw(double delta_seconds) {
   shown.example = link.example;
   Commands commands = draw_workbench(shown, size, gui_, views_, delta_seconds);
   const std::string& error = views_.model.value.error;
-  if (error != std::exchange(model_error_, error) && !error.empty())
-    say(state, "model: " + error, Severity::error);
+  if (error != model_error_) {
+    retract_error(state, "model: " + std::exchange(model_error_, error));
+    if (!error.empty()) say(state, "model: " + error, Severity::error);
+  }
   return commands;
 }
 
@@ -356,21 +359,33 @@ cv::Mat WorkbenchHost::image(const std::string& view, std::optional<cv::Size> wa
   return draw_view(view, wanted, input(), size, {gui_, views_});
 }
 
+cv::Mat WorkbenchHost::draw_apart(const WorkbenchState& shown,
+                                  const std::string& view,
+                                  cv::Size pixels) {
+  const struct Back {
+    const Gui& gui;
+    ~Back() { gui.make_current(); }
+  } back{gui_};
+  if (!apart_) apart_.reset(new Apart{Gui(gui_.scale()), Views()});
+  apart_->gui.make_current();
+  return draw_view(view, pixels, input().with(shown), size, {apart_->gui, apart_->views});
+}
+
 /// Starts the movie if everything that it shows is computed, or continues it.
 void WorkbenchHost::write_movie() {
   try {
     if (!movie_) movie_.emplace(*std::exchange(state.requests.movie, {}), state);
     movie_->step([this](const WorkbenchState& shown, const std::string& view, cv::Size pixels) {
-      return draw_view(view, pixels, input().with(shown), size, {gui_, views_});
+      return draw_apart(shown, view, pixels);
     });
     if (!movie_->finished()) return;
     say(state, "saved " + movie_->file().string());
-    movie_.reset();
   } catch (const InputError& error) {
-    movie_.reset();
     state.requests.movie.reset();
     say(state, error.what(), Severity::error);
   }
+  movie_.reset();
+  apart_.reset();
 }
 
 void WorkbenchHost::save(const Screenshot& wanted) {
@@ -379,7 +394,7 @@ void WorkbenchHost::save(const Screenshot& wanted) {
     check_writable(file);
     if (wanted.view == kReportView)
       write_window_report(state, file, [this](const auto& shown, const auto& view, cv::Size px) {
-        return draw_view(view, px, input().with(shown), size, {gui_, views_});
+        return draw_apart(shown, view, px);
       });
     else
       write_image(file, image(wanted.view, wanted.size));
@@ -387,6 +402,7 @@ void WorkbenchHost::save(const Screenshot& wanted) {
   } catch (const InputError& error) {
     say(state, error.what(), Severity::error);
   }
+  if (!movie_) apart_.reset();
 }
 
 }  // namespace gpo

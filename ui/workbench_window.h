@@ -83,7 +83,15 @@ class WorkbenchHost {
   cv::Mat image(const std::string& view, std::optional<cv::Size> wanted = {});
 
  private:
+  /// A context of Dear ImGui and caches to draw a movie and a report between the window's frames.
+  /// In the window's own context these drawings would consume its clicks and keys.
+  struct Apart {
+    Gui gui;
+    Views views;
+  };
+
   PanelInput input() const;
+  cv::Mat draw_apart(const WorkbenchState& shown, const std::string& view, cv::Size pixels);
   void save(const Screenshot& wanted);
   void write_movie();
   bool exporting() const {
@@ -92,7 +100,8 @@ class WorkbenchHost {
   }
 
   Gui& gui_;
-  std::optional<Movie> movie_;  ///< being written
+  std::optional<Movie> movie_;    ///< being written
+  std::unique_ptr<Apart> apart_;  ///< null unless a movie or a report is written
   Views views_;
   std::string model_error_;  ///< the last one that was shown
   ImageFetcher fetcher_;

@@ -164,6 +164,25 @@ void cache_camera(const PlaneLens& found, Recording& recording) {
   set_camera(recording, camera, CameraSource::self_calibrated, "cached in " + file.string());
 }
 
+/// A cached camera as it was, to be restored if a new one is discarded.
+class CachedFile {
+ public:
+  explicit CachedFile(fs::path file) : file_(std::move(file)) {
+    if (is_file(file_)) content_ = read_file(file_);
+  }
+  void restore() const {
+    std::error_code none;
+    if (content_)
+      write_file(file_, *content_);
+    else
+      fs::remove(file_, none);
+  }
+
+ private:
+  fs::path file_;
+  std::optional<std::string> content_;  ///< nullopt: there was no file
+};
+
 std::string failure_of(const PlaneLens& found) {
   return "calibration from the plane failed: " + found.reason;
 }
@@ -258,15 +277,13 @@ Worker::Opened opened_for_window(const std::shared_ptr<const Recording>& recordi
     const PlaneLens found = calibrate(*recording, progress);
     if (!found.ok) throw InputError(failure_of(found));
     Recording calibrated = *recording;
+    const CachedFile before(cache_file(*recording));
     cache_camera(found, calibrated);
     auto next = opened_for_window(std::make_shared<const Recording>(std::move(calibrated)));
     next.calibration =
         std::make_shared<const CalibrationResult>(CalibrationResult{recording, to_text(found)});
-    next.undo_calibration = [recording] {
-      std::error_code none;
-      // An earlier estimate from the same images is in the same file.
-      if (recording->camera_source != CameraSource::self_calibrated)
-        fs::remove(cache_file(*recording), none);
+    next.undo_calibration = [recording, before] {
+      before.restore();
       return opened_for_window(recording);
     };
     return next;

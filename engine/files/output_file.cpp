@@ -61,6 +61,9 @@ Unfinished& unfinished() {
   return *paths;
 }
 
+/// Returns a part of a temporary name: several machines may write the same output at once.
+std::string random_mark() { return fmt::format("{:08x}", std::random_device()()); }
+
 void write_whole(const fs::path& path, const fs::path& name, const std::string& content) {
   errno = 0;
   std::ofstream stream(path, std::ios::binary);
@@ -102,10 +105,9 @@ void make_folder(const fs::path& folder) {
 
 AtomicFile::AtomicFile(const fs::path& file) : file_(followed(file)) {
   check_writable(file);
-  // A random name, because shards on several machines may write the same file at once.
-  path_ = file_.parent_path() / fmt::format("{}.{:08x}.partial{}",
+  path_ = file_.parent_path() / fmt::format("{}.{}.partial{}",
                                             file_.filename().string(),
-                                            std::random_device()(),
+                                            random_mark(),
                                             file_.extension().string());
   unfinished().add(path_);
 }
@@ -157,10 +159,9 @@ void check_output_folder(const fs::path& folder, const std::string& ours) {
 }
 
 AtomicFolder::AtomicFolder(const fs::path& folder)
-    : folder_(fs::absolute(folder / "").parent_path()), path_(folder_.string() + ".unfinished") {
+    : folder_(fs::absolute(folder / "").parent_path()),
+      path_(fmt::format("{}.{}.unfinished", folder_.string(), random_mark())) {
   check_output_folder(folder);
-  std::error_code error;
-  fs::remove_all(path_, error);
   make_folder(path_);
   unfinished().add(path_);
 }

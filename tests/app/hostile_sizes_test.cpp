@@ -44,6 +44,16 @@ void write_changed_video(const fs::path& file,
   write_file(file, video);
 }
 
+/// Writes an AVI of 4 uncompressed frames that declares another size.
+void write_uncompressed_video(const fs::path& file, std::uint32_t side) {
+  make_video(file,
+             std::vector<cv::Mat>(4, cv::Mat(48, 64, CV_8UC3, cv::Scalar::all(99))),
+             {.codec = "rawvideo"});
+  std::string video = read_file(file);
+  video.replace(video.find("strf") + 12, 8, le(side) + le(side));
+  write_file(file, video);
+}
+
 std::string laughs() {
   std::string yaml = "a0: &a0 [x, x, x, x, x, x, x, x, x, x]\n";
   for (int i = 1; i < 12; ++i)
@@ -161,6 +171,10 @@ std::vector<Hostile> hostile_pictures() {
            [](const fs::path& folder) {
              write_changed_video(folder / "a.mp4", "mp4v", 28, big_endian({60'000, 60'000}, 2));
            }},
+          {"uncompressed video of 12000 px",  // libav refuses larger ones
+           "info {}/a.avi",
+           "an image of 12000x12000",
+           [](const fs::path& folder) { write_uncompressed_video(folder / "a.avi", 12'000); }},
           {"video of 100 million frames",
            "info {}/a.mp4",
            "",

@@ -66,7 +66,7 @@ TEST(Convert, RefusesToChangeTheCameraOfABagInTheSameFolder) {
   fs::create_directory(folder / "bags");
   fs::copy(folder / "given" / "a.mcap", folder / "bags" / "a.mcap");
   expect_refused(program("convert {} --output {}", kDesk, folder / "bags" / "b.bag"),
-                 "choose a folder without bags");
+                 "choose a folder without other recordings");
 }
 
 TEST(Convert, RefusesAnExistingFolderAndAForeignExtension) {

@@ -320,6 +320,12 @@ TEST_F(RealWindow, ReactsToKeysAndExitsWithZero) {
   EXPECT_EQ(outcome.exit_code, 0) << outcome.err << outcome.out;
 }
 
+TEST_F(RealWindow, FollowsGermanAndFrenchKeyboardLayouts) {
+  if (shell("command -v setxkbmap").exit_code != 0) GTEST_SKIP() << "setxkbmap is not installed";
+  const Outcome outcome = driven("layouts_window.sh", "");
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.err << outcome.out;
+}
+
 TEST_F(RealWindow, FollowsATourByMouseAndKeyboard) {
   if (shell("/usr/bin/python3 -c 'import Xlib'").exit_code != 0)
     GTEST_SKIP() << "python3-xlib is not installed";

@@ -2,7 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ui/workbench/work/live_host.h"
 
+#include "app/recordings/recordings.h"
 #include "engine/base/error.h"
+#include "engine/files/text_file.h"
 #include "engine/recording/layouts/open_recording.h"
 #include "tests/engine/test_folder.h"
 #include "ui/workbench/actions/actions.h"
@@ -13,7 +15,9 @@
 #include <chrono>
 #include <thread>
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
+#include <opencv2/imgproc.hpp>
 
 namespace gpo::test {
 namespace {
@@ -253,6 +257,39 @@ TEST_F(LiveHostTest, SavesWhatWasFrozenWithItsTimes) {
   EXPECT_EQ(state_.messages.severity, Severity::error) << "it exists";
   const auto saved = open_recording(folder.path() / "saved.mcap");
   EXPECT_EQ(saved->timestamps_ns, state_.document.recording->timestamps_ns);
+}
+
+/// Returns frames of the desk in half size, which take less time to calibrate, as if frozen.
+Recording small_frozen() {
+  Recording frozen = *played();
+  const auto images = frozen.images;
+  frozen.images = std::make_shared<const FrameCache>(frozen.frame_count(), [images](int frame) {
+    cv::Mat half;
+    cv::resize(images->bgr(frame), half, {}, 0.5, 0.5, cv::INTER_AREA);
+    return half;
+  });
+  frozen.camera = camera_of_view(frozen.camera.width / 2, frozen.camera.height / 2);
+  frozen.camera_source = CameraSource::self_calibrated;
+  frozen.gyroscope.reset();
+  frozen.layout = kLiveLayout;
+  frozen.name = "camera:0";
+  return frozen;
+}
+
+TEST(LiveCalibration, IsDiscardedFromTheCacheOfItsDevice) {
+  const TestFolder folder;
+  setenv("XDG_CACHE_HOME", folder.path().c_str(), 1);
+  const auto frozen = std::make_shared<const Recording>(small_frozen());
+  const std::string key =
+      fmt::format("camera:0 {}x{}", frozen->camera.width, frozen->camera.height);
+  const std::string earlier = "# of another day\n";
+  const auto file =
+      folder.write(fmt::format("gpo-inspector/cameras/live-{:016x}.yaml", fnv1a(key)), earlier);
+  const auto opened = opened_for_window(frozen);
+  const auto calibrated = opened.calibrate({}, [](const std::string&, int, int) {});
+  EXPECT_NE(read_file(file), earlier);
+  calibrated.undo_calibration();
+  EXPECT_EQ(read_file(file), earlier);
 }
 
 TEST_F(LiveHostTest, OpensNothingForScripts) {

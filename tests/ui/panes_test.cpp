@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/inspection/studies/studies.h"
 #include "tests/ui/window_test.h"
+#include "ui/context/imgui_versions.h"
 #include "ui/views/image/image_geometry.h"
 #include "ui/views/scene/scene_view.h"
 
@@ -179,6 +180,34 @@ TEST_F(PanesTest, TimesOfTheSameTracksAreEqual) {
   const cv::Mat equal = compare_with_tracking_of(500);
   ASSERT_EQ(shown_results(state_).size(), 2U);
   EXPECT_TRUE(same_bytes(equal, compare_with_tracking_of(1255)));
+}
+
+TEST_F(PanesTest, RowsOfTimesKeepTheirIds) {
+  Inspection inspection = made_inspection();
+  inspection.timing = {100, 20, 3, 40, 30, 163};
+  open_pane(inspection, "timing");
+  const Rectangle place = layout().drawer;
+  const float x = place.right() - 40;
+  for (float y = place.y + 8; y < place.bottom() && ImGui::GetHoveredID() == 0; y += 4)
+    point_at(x, y);
+  const ImGuiID id = ImGui::GetHoveredID();
+  ASSERT_NE(id, 0U);
+  std::vector<std::unique_ptr<ShownResult>> elsewhere;
+  for (int i = 0; i < 10; ++i) {
+    for (int k = 0; k < 100; ++k) elsewhere.push_back(std::make_unique<ShownResult>());
+    draw();
+    EXPECT_EQ(ImGui::GetHoveredID(), id);
+  }
+}
+
+TEST_F(PanesTest, MessageLineShowsSuccessAfterAFailedJob) {
+  open(made_inspection());
+  say(state_, "saved a.png");
+  draw_times(2);
+  const cv::Mat image = context_.read_bgr();
+  worker_.error = "cannot be read";
+  draw_times(2);
+  EXPECT_TRUE(same_bytes(image, context_.read_bgr()));
 }
 
 TEST_F(PanesTest, HasNoTimesInScreenshots) {

@@ -288,7 +288,14 @@ class MovieTest : public DrawingTest {
   }
 
   TestFolder folder_;
-  OffscreenContext context_{640, 400};
+  /// Draws a frame of the window after the next frame of a movie, if one is written.
+  Commands draw_window() {
+    host_.synchronize();
+    context_.bind();
+    return host_.draw();
+  }
+
+  OffscreenContext context_{1280, 720};
   Gui gui_;
   WorkbenchHost host_{gui_, [](const auto&...) { return open(); }, "example"};
   WorkbenchState& state_ = host_.state;
@@ -326,6 +333,24 @@ TEST_F(MovieTest, WritesOneFramePerCallAndDeletesACanceledFile) {
   EXPECT_FALSE(host_.busy());
   EXPECT_TRUE(fs::is_empty(folder_.path()));
   EXPECT_THAT(state_.messages.text, HasSubstr("canceled"));
+}
+
+TEST_F(MovieTest, LeavesClicksAndTheWheelToTheWindow) {
+  const WindowLayout shown = window_layout({.width = 1280, .height = 720});
+  ImGuiIO& io = ImGui::GetIO();
+  io.MousePos = {27 + 3 * 34, shown.timeline.y + shown.timeline.height / 2};
+  for (int i = 0; i < 3; ++i) draw_window();
+  run_line(state_, "export-video " + file_.string());
+  draw_window();
+  io.MouseDown[0] = true;
+  EXPECT_TRUE(draw_window().empty());
+  io.MouseDown[0] = false;
+  EXPECT_EQ(test::line_of(draw_window()), "next");
+  io.MousePos = {shown.image.x + 100, shown.image.y + 300};
+  for (int i = 0; i < 2; ++i) draw_window();
+  io.MouseWheel = 1;
+  EXPECT_NE(test::find<ZoomImage>(draw_window()), nullptr);
+  EXPECT_TRUE(host_.writing());
 }
 
 TEST_F(MovieTest, RejectsWrongNamesRatesAndFolders) {

@@ -91,6 +91,23 @@ TEST_F(OpenedWindow, SwitchesRansacInTheSettings) {
             uses_ransac(inspection_->settings.options));
 }
 
+TEST_F(OpenedWindow, SettingsStayUnderTheMouseIfTheVerdictGrows) {
+  draw_times(2);
+  const float before = layout().settings.y;
+  point_at(layout().settings.x + 150, before + 100);
+  auto longer = std::make_shared<Inspection>(*inspection_);
+  auto result = std::make_shared<Initialization>(*inspection_->initialization);
+  result->ok = false;
+  for (int i = 0; i < 30; ++i) result->reason += "a reason of many words ";
+  longer->initialization = result;
+  state_.results.inspection = longer;
+  draw_times(3);
+  EXPECT_EQ(layout().settings.y, before);
+  point_at(layout().image.x + 100, layout().image.y + 200);
+  draw_times(2);
+  EXPECT_GT(layout().settings.y, before) << "once the mouse is elsewhere";
+}
+
 /// A click on the number of the window's frames, as on any other, then digits and Enter.
 TEST_F(OpenedWindow, TypesIntoANumberAfterOneClick) {
   const auto typed = [&](float y) {

@@ -212,7 +212,9 @@ ImFont* font(Font font) { return ImGui::GetIO().Fonts->Fonts[static_cast<int>(fo
 
 void Gui::create() {
   IMGUI_CHECKVERSION();
-  ImGui::CreateContext();
+  before_ = ImGui::GetCurrentContext();
+  context_ = ImGui::CreateContext();
+  make_current();
   ImGuiIO& io = ImGui::GetIO();
   io.IniFilename = nullptr;
   io.LogFilename = nullptr;
@@ -236,9 +238,11 @@ Gui::Gui(WindowContext& window) : screen_scale_(window.content_scale()), has_win
 }
 
 Gui::~Gui() {
+  make_current();
   ImGui_ImplOpenGL3_Shutdown();
   if (has_window_) ImGui_ImplGlfw_Shutdown();
-  ImGui::DestroyContext();
+  ImGui::DestroyContext(context_);
+  ImGui::SetCurrentContext(before_);
 }
 
 void Gui::set_theme(Theme theme) {

@@ -50,7 +50,9 @@ ImFont* font(Font font);
 
 std::string_view font_file(bool bold);  ///< OpenType, embedded in the program
 
-/// Dear ImGui in the current OpenGL context. Fonts and paddings are larger on HiDPI screens.
+/// A context of Dear ImGui in the current OpenGL context, with its own input. It is current from
+/// its construction to its destruction, then the one before again. Fonts and paddings are larger on
+/// HiDPI screens.
 class Gui {
  public:
   static constexpr double kFixedFrame_s = 1.0 / 60;
@@ -63,6 +65,8 @@ class Gui {
   Gui(const Gui&) = delete;
   Gui& operator=(const Gui&) = delete;
 
+  /// Makes its context the current one.
+  void make_current() const { ImGui::SetCurrentContext(context_); }
   void begin_frame(int width, int height, double delta_seconds = kFixedFrame_s);
   void end_frame();  ///< Renders over the content of the bound framebuffer.
   /// The same, but draws only the parts that changed since the last frame.
@@ -85,6 +89,8 @@ class Gui {
   void create();
   void renew_fonts();
 
+  ImGuiContext* before_ = nullptr;
+  ImGuiContext* context_ = nullptr;
   float screen_scale_;
   float scale_ = screen_scale_;
   Theme theme_ = Theme::dark;

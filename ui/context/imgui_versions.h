@@ -32,6 +32,17 @@ inline void hand_pointer_to_imgui([[maybe_unused]] GLFWwindow* window,
 #endif
 }
 
+/// Returns the key to pass to Dear ImGui; 1.86 does not know the keyboard layout.
+inline int key_for_imgui(int place, [[maybe_unused]] int layout_key) {
+#if IMGUI_VERSION_NUM < 18700
+  const bool letter = layout_key >= GLFW_KEY_A && layout_key <= GLFW_KEY_Z;
+  // The place of a letter may have a sign in the layout, whose key is unused.
+  const bool other = place >= GLFW_KEY_A && place <= GLFW_KEY_Z;
+  if (letter || other) return layout_key;
+#endif
+  return place;
+}
+
 /// Passes a key event with its own modifiers. Dear ImGui from 1.89 on would query the keyboard's
 /// present state, in which the next Ctrl may already be down.
 inline void hand_key_to_imgui(

@@ -66,6 +66,12 @@ const LoadedModel& model_of(const PanelInput& input, Views& views) {
 
 }  // namespace
 
+PanelInput PanelInput::with(const WorkbenchState& other) const {
+  // The compiler refuses a list that lacks a member.
+  const auto& [own, w, sv, sc, wr, t, h, f, m, l, e, o, s] = *this;
+  return {other, w, sv, sc, wr, t, h, f, m, l, e, o, s};
+}
+
 std::vector<std::string_view> shown_names(const PanelInput& input, const Views& views) {
   const auto& [document, files] = std::tie(input.state.document, input.state.files);
   const MessageLog& messages = input.state.messages;
@@ -241,6 +247,11 @@ double wheel_zoom() {
 Vector2d drag_px() {
   if (!ImGui::IsItemActive()) return Vector2d::Zero();
   return {ImGui::GetIO().MouseDelta.x, ImGui::GetIO().MouseDelta.y};
+}
+
+double current_drag() {
+  const ImGuiIO& io = ImGui::GetIO();
+  return io.MouseDown[ImGuiMouseButton_Left] ? io.MouseClickedTime[ImGuiMouseButton_Left] : 0;
 }
 
 bool is_item_double_clicked() {

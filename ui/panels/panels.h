@@ -42,6 +42,8 @@ double wheel_zoom();
 /// Returns how far the mouse drags the last item in this frame [px].
 Vector2d drag_px();
 bool is_item_double_clicked();
+/// Returns when the left button went down, which identifies a drag; 0 if it is up.
+double current_drag();
 
 /// Fills `place` with a text that says why there is no content, and what to do.
 void draw_empty(const Rectangle& place, const std::string& text);
@@ -119,16 +121,8 @@ struct PanelInput {
 
   /// Returns the last finished inspection; null if none.
   const Inspection* inspection() const { return state.results.inspection.get(); }
-  PanelInput with(const WorkbenchState& other) const {
-    return {.state = other,
-            .worker = worker,
-            .survey = survey,
-            .timings = timings,
-            .fetcher = fetcher,
-            .models = models,
-            .opening = opening,
-            .scale = scale};
-  }
+  /// Returns the same input with another state.
+  PanelInput with(const WorkbenchState& other) const;
 };
 
 /// A text field with a list of what matches it: the command palette, the file browser.
@@ -184,6 +178,7 @@ struct Views {
   TableOrder order;  ///< order of the compared results
   WindowImage window;
   float verdict_height = 0, settings_height = 0;  ///< content heights [px]; 0: unknown
+  Rectangle settings;                             ///< place of the settings in the last frame
   std::vector<ContextSubject> context;            ///< subjects of the open context menu
   bool opens_context = false;                     ///< its menu opens in this frame
 };

@@ -62,7 +62,14 @@ void step_back(WorkbenchState& state, std::vector<UndoStep>& from, std::vector<U
   to.push_back(document);
   static_cast<UndoStep&>(document) = from.back();
   from.pop_back();
-  document.dragging_settings = false;
+  document.drag = 0;
+}
+
+/// Begins a step of `undo` unless the change continues the drag of the last one.
+void begin_step(Document& document, double drag) {
+  if (drag == 0 || drag != document.drag || document.undo.empty()) push_undo(document);
+  document.drag = drag;
+  document.redo.clear();
 }
 
 /// Removes what belongs to the reference frame `before.start` from settings with another one: the
@@ -89,6 +96,11 @@ void say(WorkbenchState& state, const std::string& text, Severity severity) {
   state.messages.lines.push_back({severity, text});
   if (state.messages.lines.size() > kMostLines)
     state.messages.lines.erase(state.messages.lines.begin());
+}
+
+void retract_error(WorkbenchState& state, const std::string& text) {
+  MessageLog& messages = state.messages;
+  if (messages.severity == Severity::error && messages.text == text) messages.text.clear();
 }
 
 std::optional<double> seconds_of_message(const WorkbenchState& state) {
@@ -239,10 +251,10 @@ bool is_frozen(const WorkbenchState& state) {
   return !state.live && recording && recording->layout == kLiveLayout && !state.live_source.empty();
 }
 
-void change_settings(WorkbenchState& state, Settings settings, bool dragging) {
+void change_settings(WorkbenchState& state, Settings settings, double drag) {
   Document& document = state.document;
   if (document.recording) settings = fit_window(settings, state.frame_count());
-  const bool continues = dragging && document.dragging_settings && !document.undo.empty();
+  const bool continues = drag != 0 && drag == document.drag && !document.undo.empty();
   const Settings& before = continues ? document.undo.back().settings : document.settings;
   if (settings.start != before.start) {
     leave_reference_frame(state, settings, before);
@@ -251,10 +263,16 @@ void change_settings(WorkbenchState& state, Settings settings, bool dragging) {
     settings.mask = before.mask;
   }
   if (settings == document.settings) return;
-  if (!continues) push_undo(document);
-  document.dragging_settings = dragging;
-  document.redo.clear();
+  begin_step(document, drag);
   document.settings = std::move(settings);
+}
+
+void change_cube_side(WorkbenchState& state, double side, double drag) {
+  constexpr double kMost = 2;
+  side = std::clamp(side, 0.0, kMost);
+  if (side == state.document.cube_side) return;
+  begin_step(state.document, drag);
+  state.document.cube_side = side;
 }
 
 void move_cube(WorkbenchState& state,
@@ -272,7 +290,7 @@ void move_cube(WorkbenchState& state,
     return;
   if (!dragging) push_undo(document);
   document.redo.clear();
-  document.dragging_settings = false;
+  document.drag = 0;
   static_cast<UndoStep&>(document) = std::move(moved);
 }
 

@@ -141,7 +141,7 @@ struct SavedSession {
 struct Document : UndoStep {
   std::shared_ptr<const Recording> recording;  ///< null: none is open
   std::vector<UndoStep> undo, redo;            ///< the most recent one last
-  bool dragging_settings = false;              ///< the last change was one of many small ones
+  double drag = 0;                             ///< the last change's, see `change_settings`
   std::map<fs::path, Settings> earlier;        ///< by recording opened before
   std::vector<Bookmark> bookmarks;             ///< by frame
   std::vector<Configuration> compared = {{"gpo"}, {"pnp_ba"}, {"ba"}, {"pba"}};
@@ -261,6 +261,8 @@ struct WorkbenchState {
 };
 
 void say(WorkbenchState& state, const std::string& text, Severity severity = Severity::note);
+/// Clears the message line if it shows this error, whose cause is gone. The log keeps it.
+void retract_error(WorkbenchState& state, const std::string& text);
 /// Time for which the message is still shown, infinite for errors; nullopt if there is none.
 std::optional<double> seconds_of_message(const WorkbenchState& state);
 
@@ -270,9 +272,12 @@ void advance(WorkbenchState& state, double seconds);
 /// Time until `advance` shows another frame [s]; nullopt if it will not.
 std::optional<double> seconds_to_next_frame(const WorkbenchState& state);
 
-/// Changes the settings; `undo` restores the old ones, those of all changes while `dragging`.
-/// Another start removes excluded tracks and masks, which belong to the reference frame.
-void change_settings(WorkbenchState& state, Settings settings, bool dragging = false);
+/// Changes the settings; `undo` restores the old ones. Another start removes excluded tracks and
+/// masks, which belong to the reference frame. `drag`: when the mouse button went down; 0: none.
+/// All changes of a drag are one step.
+void change_settings(WorkbenchState& state, Settings settings, double drag = 0);
+/// Changes the side of the cubes, as a step for `undo` like `change_settings`.
+void change_cube_side(WorkbenchState& state, double side, double drag = 0);
 /// Moves a plane's cube to where the ray of the reference camera meets the plane; nullopt: resets
 /// all. `plane` counts from 1; 0: the leading plane. `dragging`: `undo` restores the place before
 /// the last move without it.

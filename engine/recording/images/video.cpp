@@ -152,6 +152,9 @@ VideoDecoder::VideoDecoder(fs::path file, const ReadProgress& progress, int firs
   const AVStream& stream = *input_->stream;
   index_.unit_s = av_q2d(stream.time_base);
   index_.size = {stream.codecpar->width, stream.codecpar->height};
+  check_image_size(file_.string(),
+                   static_cast<std::uint64_t>(index_.size.width),
+                   static_cast<std::uint64_t>(index_.size.height));
   const Orientation orientation = orientation_of(stream);
   index_.quarter_turns = orientation.quarter_turns;
   index_.mirrored = orientation.mirrored;

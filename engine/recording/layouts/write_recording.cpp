@@ -7,6 +7,7 @@
 #include "engine/recording/bags/messages.h"
 #include "engine/recording/companions/companion_files.h"
 #include "engine/recording/images/images.h"
+#include "engine/recording/layouts/open_recording.h"
 #include "engine/window/timestamps.h"
 
 #include <algorithm>
@@ -149,7 +150,26 @@ std::map<std::string, std::string> beside_bag(const Recording& recording,
   return files;
 }
 
-void check_beside(const fs::path& folder, const std::map<std::string, std::string>& files) {
+/// Returns a bag in the folder, or another recording than the written one, to which the sidecar
+/// files would belong, too; nullopt if there is none.
+std::optional<fs::path> other_recording(const fs::path& folder, const Recording& written) {
+  const auto is_other = [&](const fs::path& file) {
+    const auto is_it = [&](const fs::path& one) { return same_file(one, file); };
+    return !is_it(written.path) && std::ranges::none_of(written.image_files, is_it);
+  };
+  if (const auto bags = files_of_kind(folder, FileKind::bag); !bags.empty()) return bags.front();
+  if (find_euroc(folder) && is_other(folder)) return folder;
+  for (const auto& files :
+       {files_of_kind(folder, FileKind::video), find_image_sequence(folder).files})
+    if (const auto found = std::ranges::find_if(files, is_other); found != files.end())
+      return *found;
+  return std::nullopt;
+}
+
+/// Throws InputError if the sidecar files would change another recording, or its files this one.
+void check_beside(const fs::path& folder,
+                  const std::map<std::string, std::string>& files,
+                  const Recording& recording) {
   for (const std::string& name : split(
            "plane.yaml board.yaml imu.yaml camera.yaml groundtruth.txt groundtruth.yaml tracks.csv",
            ' ')) {
@@ -160,10 +180,34 @@ void check_beside(const fs::path& folder, const std::map<std::string, std::strin
   }
   const auto is_new = [&](const auto& one) { return !is_file(folder / one.first); };
   if (!is_folder(folder) || std::ranges::none_of(files, is_new)) return;
-  const std::string first = files.begin()->first;
-  for (const fs::path& other : files_of_kind(folder, FileKind::bag))
-    refuse(other, "would be read with the {} of the new bag; choose a folder without bags", first);
+  const std::string first = std::ranges::find_if(files, is_new)->first;
+  if (const auto other = other_recording(folder, recording))
+    refuse(*other,
+           "would be read with the {} of the new bag; choose a folder without other recordings",
+           first);
 }
+
+/// Files that are removed again unless all of them and the bag are finished.
+class Sidecars {
+ public:
+  Sidecars() = default;
+  ~Sidecars() {
+    std::error_code none;
+    for (const fs::path& file : written_) fs::remove(file, none);
+  }
+  Sidecars(const Sidecars&) = delete;
+  Sidecars& operator=(const Sidecars&) = delete;
+
+  void write(const fs::path& file, const std::string& text) {
+    if (is_file(file)) return;  // with the same text, see `check_beside`
+    write_file(file, text);
+    written_.push_back(file);
+  }
+  void finish() { written_.clear(); }
+
+ private:
+  std::vector<fs::path> written_;
+};
 
 void check_bag(const Recording& recording,
                const std::vector<Planned>& plan,
@@ -198,7 +242,7 @@ void write_bag(const Recording& recording,
   check_bag(recording, plan, format, output);
   const fs::path folder = folder_of(output);
   const auto files = beside_bag(recording, poses);
-  check_beside(folder, files);
+  check_beside(folder, files, recording);
   make_folder(folder);
   AtomicFile unfinished(output);
   const auto open = format == RecordingFormat::mcap ? mcap_writer : ros1_writer;
@@ -209,8 +253,10 @@ void write_bag(const Recording& recording,
     if (progress && one.topic == Topic::images) progress(one.number + 1, recording.frame_count());
   }
   writer.finish();
-  for (const auto& [name, text] : files) write_file(folder / name, text);
+  Sidecars sidecars;
+  for (const auto& [name, text] : files) sidecars.write(folder / name, text);
   unfinished.finish();
+  sidecars.finish();
 }
 
 std::string camera_yaml(const Recording& recording) {

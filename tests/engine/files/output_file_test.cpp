@@ -124,6 +124,23 @@ TEST(AtomicFile, IsRemovedUnlessFinished) {
   EXPECT_EQ(count_in(folder.path()), 0);
 }
 
+TEST(AtomicFolder, KeepsFoldersThatOthersAreWriting) {
+  const TestFolder folder;
+  const fs::path output = folder.path() / "desk";
+  fs::create_directory(folder.path() / "desk.unfinished");
+  folder.write("desk.unfinished/notes.txt", "of the user");
+  {
+    AtomicFolder first(output);
+    std::ofstream(first.path() / "a.txt") << "first";
+    const AtomicFolder second(output);
+    EXPECT_NE(first.path(), second.path());
+    first.finish();
+  }
+  EXPECT_EQ(folder.read("desk/a.txt"), "first");
+  EXPECT_EQ(folder.read("desk.unfinished/notes.txt"), "of the user");
+  EXPECT_EQ(count_in(folder.path()), 2);
+}
+
 TEST(SameFile, RecognizesOtherPathsOfTheSameFile) {
   const TestFolder folder;
   const fs::path file = folder.path() / "a";  // does not exist yet

@@ -300,6 +300,30 @@ TEST(Workbench, UndoRestoresSettingsAndWholeDrags) {
   EXPECT_EQ(state.document.settings.options.ransac_threshold_px, 2.3);
 }
 
+TEST(Workbench, UndoRestoresTheCubeSideAlone) {
+  WorkbenchState state = opened(60);
+  run(state, "ransac");
+  const Settings changed = state.document.settings;
+  for (const double side : {0.2, 0.3, 0.4}) apply(state, SetCubeSide{side, 1});
+  run(state, "undo");
+  EXPECT_EQ(state.document.cube_side, 0) << "the drag is one step";
+  EXPECT_EQ(state.document.settings, changed);
+  run(state, "redo");
+  EXPECT_EQ(state.document.cube_side, 0.4);
+}
+
+TEST(Workbench, UndoRestoresOneOfTwoDrags) {
+  WorkbenchState state = opened(60);
+  for (const double drag : {1.5, 3.0})
+    for (const double px : {drag + 0.1, drag + 0.2}) {
+      Settings settings = state.document.settings;
+      settings.options.ransac_threshold_px = px;
+      apply(state, ChangeSettings{settings, drag});
+    }
+  run(state, "undo");
+  EXPECT_EQ(state.document.settings.options.ransac_threshold_px, 1.7);
+}
+
 TEST(Workbench, UndoRestoresTheCubePosition) {
   WorkbenchState state = opened(60);
   const Eigen::Vector3d there(0.1, 0.2, 1), elsewhere(0.3, 0.2, 1);
@@ -323,6 +347,17 @@ TEST(Workbench, RansacSwitchedTwiceIsTheDefaultAgain) {
   run(state, "ransac");
   EXPECT_TRUE(uses_ransac(settings.options));
   EXPECT_EQ(settings, first);
+}
+
+TEST(Workbench, AnErrorIsRetractedOnlyIfItIsShown) {
+  WorkbenchState state = opened(60);
+  say(state, "saved");
+  say(state, "cannot be read", Severity::error);
+  retract_error(state, "another one");
+  EXPECT_EQ(state.messages.text, "cannot be read");
+  retract_error(state, "cannot be read");
+  EXPECT_EQ(state.messages.text, "");
+  EXPECT_EQ(state.messages.lines.size(), 2U) << "the log keeps it";
 }
 
 TEST(Workbench, NotesVanishAndErrorsStay) {

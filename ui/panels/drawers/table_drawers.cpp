@@ -196,9 +196,10 @@ void draw_stage_bar(const ShownResult& result, double longest_ms) {
   }
 }
 
-void draw_times(const ShownResult& result, double longest_ms, bool timings, float scale) {
+/// `row`: index that identifies its items.
+void draw_times(const ShownResult& result, int row, double longest_ms, bool timings, float scale) {
   ImGui::TableNextRow();
-  ImGui::PushID(&result);
+  ImGui::PushID(row);
   ImGui::TableNextColumn();
   marked_name(result.current ? Sign::disc : Sign::dot, result.rgb, result.name, scale);
   const auto number = [&](double ms) {
@@ -292,7 +293,8 @@ void timing_drawer(const PanelContext& ui, const Rectangle& place) {
   ImGui::TableSetupColumn("", ImGuiTableColumnFlags_WidthStretch);
   ImGui::TableSetupScrollFreeze(0, 1);
   stage_header(s);
-  for (const ShownResult& result : shown) draw_times(result, longest_ms, ui.timings, s);
+  for (std::size_t i = 0; i < shown.size(); ++i)
+    draw_times(shown[i], static_cast<int>(i), longest_ms, ui.timings, s);
   ImGui::EndTable();
 }
 

@@ -245,11 +245,8 @@ void status_line(const PanelContext& ui, const Rectangle& place) {
   {
     const PanelScope scope("status", place, {12 * s, padding});
     const float right = place.width - 12 * s;
-    const bool failed = !ui.worker.error.empty();
-    const std::string& message = failed ? ui.worker.error : ui.state.messages.text;
-    const Severity severity = failed            ? Severity::error
-                              : message.empty() ? Severity::note
-                                                : ui.state.messages.severity;
+    const std::string& message = ui.state.messages.text;
+    const Severity severity = message.empty() ? Severity::note : ui.state.messages.severity;
     const std::uint32_t color = color_of(role_of(severity, Role::text_dim));
     if (const JobStatus* job = current_job(ui)) {
       const float left = draw_progress(*job, s);

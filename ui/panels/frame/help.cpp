@@ -35,7 +35,7 @@ std::vector<KeyRow> key_rows(const WorkbenchState& state) {
     const bool method = action.menu == "Method" && action.name.starts_with("method ");
     KeyRow row{"", (method ? "Method " : "") + action.title, "", action.tooltip};
     for (const Shortcut& shortcut : action.shortcuts)
-      row.keys += (row.keys.empty() ? "" : " or ") + shortcut.label;
+      if (!shortcut.label.empty()) row.keys += (row.keys.empty() ? "" : " or ") + shortcut.label;
     if (action.checked) {
       row.on = action.checked(state);
       row.value = row.on ? "on" : "off";

@@ -181,7 +181,7 @@ void cube_row(const SettingRows& rows) {
   const char* format = side > 0 ? "%.2f d" : "automatic";
   if (ImGui::DragScalar(
           "##cube_side", ImGuiDataType_Double, &side, 0.002F, &least, &most, format, kClamped))
-    push(rows.ui.commands, SetCubeSide{side});
+    push(rows.ui.commands, SetCubeSide{side, current_drag()});
   tooltip(help + kDrag);
 }
 
@@ -312,6 +312,15 @@ void draw_verdict(const PanelContext& ui, const Initialization& result, const Ro
   if (judged) tooltip("Verdict on the window: " + verdict_text(verdict));
 }
 
+/// Returns whether the mouse is over the settings or holds one of them: they must not move then.
+bool settings_in_use(const Views& views) {
+  const Rectangle& place = views.settings;
+  const Vector2d mouse = mouse_px();
+  const bool over = mouse.x() >= place.x && mouse.x() < place.right() && mouse.y() >= place.y &&
+                    mouse.y() < place.bottom();
+  return over || ImGui::IsAnyItemActive();
+}
+
 void draw_state(const PanelInput& input, float right) {
   const bool stale =
       input.inspection() && !(input.inspection()->settings == input.state.document.settings);
@@ -342,7 +351,8 @@ void settings_panel(const PanelContext& ui, const Rectangle& place) {
   if (ImGui::IsItemToggledOpen()) ImGui::SetScrollHereY(0);
   tooltip("Shows inlier selection, seed, and options of the optimization");
   if (advanced) rows.draw(true);
-  if (rows.changed) push(ui.commands, ChangeSettings{rows.settings, ImGui::IsMouseDown(0)});
+  if (rows.changed) push(ui.commands, ChangeSettings{rows.settings, current_drag()});
+  ui.views.settings = place;
   ui.views.settings_height = std::round(ImGui::GetCursorPosY() + 6 * s);
   ImGui::PopStyleVar(2);
 }
@@ -360,7 +370,8 @@ void verdict_panel(const PanelContext& ui, const Rectangle& place) {
   else
     text_in(Font::heading, color_of(Role::text_dim), "\u2013");
   findings_group(ui, rows.left, rows.right);
-  ui.views.verdict_height = std::round(ImGui::GetCursorPosY() + 4 * s);
+  const float height = std::round(ImGui::GetCursorPosY() + 4 * s);
+  if (ui.views.verdict_height == 0 || !settings_in_use(ui.views)) ui.views.verdict_height = height;
 }
 
 void results_panel(const PanelContext& ui, const Rectangle& place) {

@@ -33,8 +33,10 @@ void recent_list(const PanelContext& ui, const Rectangle& place) {
   if (recent.empty()) return;
   ImGui::Dummy({1, 8 * ui.scale});
   centered("Recent", place);
-  for (std::size_t i = 0; i < std::min(kMost, recent.size()); ++i) {
-    const std::string name = recent[i].filename().string();
+  const std::vector<std::string> names =
+      short_names(std::span(recent).first(std::min(kMost, recent.size())));
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    const std::string& name = names[i];
     const float width = ImGui::CalcTextSize(name.c_str()).x;
     ImGui::SetCursorPosX(std::round((place.width - width) / 2));
     ImGui::PushID(static_cast<int>(i));

@@ -108,7 +108,7 @@ void drag_window_ends(const PanelContext& ui, const TimeAxis& axis, const Rectan
       ImGui::SetMouseCursor(ImGuiMouseCursor_ResizeEW);
     tooltip("Drag to move this end of the window");
     if (ImGui::IsItemActive() && ImGui::GetIO().MouseDelta.x != 0)
-      push(ui.commands, ChangeSettings{moved(settings, under, count), true});
+      push(ui.commands, ChangeSettings{moved(settings, under, count), current_drag()});
   };
   handle("start", settings.start, start_window_at);
   handle("end", std::min(count, settings.start + settings.frames), end_window_at);

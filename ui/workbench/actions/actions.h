@@ -11,7 +11,7 @@ namespace gpo {
 
 /// A key or, if `character` is not 0, whatever key types it on the user's keyboard layout.
 struct Shortcut {
-  int key = 0;  ///< GLFW_KEY_*
+  int key = 0;  ///< GLFW_KEY_* by the keyboard layout, see `key_in_layout`
   bool shift = false;
   bool control = false;
   char32_t character = 0;  ///< lower case
@@ -70,7 +70,7 @@ const Action* find_action(const std::string& name);
 /// For names in the source. Throws std::logic_error if no action has that name.
 const Action& action_named(std::string_view name);
 
-/// The action of a key without Alt or Super; null if it has none.
+/// The action of a key without Alt or Super, by the keyboard layout; null if it has none.
 const Action* action_of_key(int glfw_key, bool shift, bool control = false);
 /// The same of a typed character. `state`: null for a workbench in which no action `takes_keys`.
 const Action* action_of_character(char32_t typed, const WorkbenchState* state = nullptr);
@@ -117,8 +117,8 @@ struct RunAction {
 };
 struct ChangeSettings {
   Settings settings;
-  bool dragging = false;  ///< one of many small changes, which are undone together
-  void operator()(WorkbenchState& state) const { change_settings(state, settings, dragging); }
+  double drag = 0;  ///< see `change_settings`
+  void operator()(WorkbenchState& state) const { change_settings(state, settings, drag); }
 };
 struct GoToFrame {
   int frame;
@@ -126,7 +126,8 @@ struct GoToFrame {
 };
 struct SetCubeSide {
   double side;
-  void operator()(WorkbenchState& s) const { s.document.cube_side = std::clamp(side, 0.0, 2.0); }
+  double drag = 0;  ///< see `change_settings`
+  void operator()(WorkbenchState& state) const { change_cube_side(state, side, drag); }
 };
 template <class T, T ViewState::*member>
 struct SetView {

@@ -33,9 +33,11 @@ std::vector<std::int64_t> tracks_named(const State& state, const Arguments& argu
 }
 
 void add_undo(const MenuRows& menu) {
-  Action& undo = menu.plain(
-      {"undo", "Undo", "Undoes the last change to settings, excluded tracks or cube position"},
-      gpo::undo);
+  Action& undo =
+      menu.plain({"undo",
+                  "Undo",
+                  "Undoes the last change to settings, excluded tracks, cube side or position"},
+                 gpo::undo);
   undo.shortcuts = {control('Z')};
   undo.value = [](const State& s) { return std::to_string(s.document.undo.size()); };
   Action& redo = menu.plain({"redo", "Redo", "Reapplies the change that was undone"}, gpo::redo);

@@ -338,7 +338,8 @@ void add_text_sizes(const MenuRows& menu) {
   };
   complete(menu.plain({"larger", "Larger text", "Enlarges text and controls by a tenth"},
                       [](State& s) { set_zoom(s, s.view.text_zoom + kZoomStep); }),
-           {control_key(GLFW_KEY_EQUAL, "Ctrl+plus", true),
+           {control_key('+', "Ctrl+plus"),
+            control_key(GLFW_KEY_EQUAL, "", true),  // types + on a US keyboard
             control_key(GLFW_KEY_EQUAL, "Ctrl+="),
             control_key(GLFW_KEY_KP_ADD, "Ctrl+keypad +")});
   complete(menu.plain({"smaller", "Smaller text", "Shrinks text and controls by a tenth"},

@@ -46,6 +46,33 @@ void reset_view(ViewState& view) {
   view.drawn_mask.reset();
 }
 
+void reset_results(ComputedResults& results) {
+  results.inspection.reset();
+  results.surveyed = std::make_shared<const SurveyResults>();
+  results.study.reset();
+  results.scan.reset();
+}
+
+/// Resets what the user did with the tracks and cubes of a recording.
+void reset_edits(WorkbenchState& state) {
+  Document& document = state.document;
+  document.cube_ray.reset();
+  document.other_cube_rays.clear();
+  document.settings.exclude.clear();
+  document.undo.clear();
+  document.redo.clear();
+  state.selection = {};
+  state.hover = {};
+}
+
+/// Puts the recording's notes into the log, and the first one into the message line.
+void say_notes(WorkbenchState& state) {
+  state.messages.text.clear();
+  const auto& notes = state.document.recording->notes;
+  for (const std::string& note : notes) say(state, note);
+  if (!notes.empty()) state.messages.text = notes.front();
+}
+
 /// Returns whether a recording is open that can be opened again; that of a live source cannot.
 bool has_file(const WorkbenchState& state) {
   return state.document.recording && state.document.recording->layout != kLiveLayout;
@@ -76,6 +103,13 @@ constexpr std::array kWindowFields = {"theme", "division", "text_zoom"};
 
 bool is_window_field(const SessionField& field) {
   return std::ranges::count(kWindowFields, std::string_view(field.key)) > 0;
+}
+
+/// Returns the absolute path without "." and a slash at its end.
+fs::path plain_path(const fs::path& path) {
+  std::error_code none;
+  const fs::path plain = fs::absolute(path, none).lexically_normal();
+  return plain.has_filename() ? plain : plain.parent_path();
 }
 
 fs::path window_file() { return user_state_folder() / "window.json"; }
@@ -150,24 +184,15 @@ void apply_recording(WorkbenchState& state, std::shared_ptr<const Recording> rec
       if (setting.by_hand) setting.set(document.settings, setting.get(Settings{}));
     change_window(document, *recording);
   }
+  const int frames_before = state.frame_count();
   document.recording = std::move(recording);
-  document.cube_ray.reset();
-  document.other_cube_rays.clear();
   if (!stays) document.bookmarks.clear();
-  document.settings.exclude.clear();
-  document.undo.clear();
-  document.redo.clear();
-  state.results.inspection.reset();
-  state.results.surveyed = std::make_shared<const SurveyResults>();
-  state.results.study.reset();
-  state.results.scan.reset();
-  state.selection = {};
-  state.hover = {};
-  if (!continued) reset_view(state.view);
-  state.messages.text.clear();
-  const auto& notes = document.recording->notes;
-  for (const std::string& note : notes) say(state, note);
-  if (!notes.empty()) state.messages.text = notes.front();
+  reset_results(state.results);
+  if (!continued) {
+    reset_edits(state);
+    reset_view(state.view);
+    say_notes(state);
+  }
   const int frames = state.frame_count();
   const Settings fitting = fit_window(document.settings, frames);
   if (fitting.start != document.settings.start)
@@ -178,7 +203,9 @@ void apply_recording(WorkbenchState& state, std::shared_ptr<const Recording> rec
                     frames - 1),
         Severity::warning);
   document.settings = fitting;
-  state.view.time_span = first_time_span(fitting, frames);
+  // The user may have zoomed the time line of the frames so far.
+  if (!continued || state.view.time_span == first_time_span(fitting, frames_before))
+    state.view.time_span = first_time_span(fitting, frames);
   if (!stays) state.view.frame = std::max(0, fitting.start + std::min(fitting.frames, frames) - 1);
   const auto session = std::exchange(state.files.waiting_session, {});
   if (!session) return;
@@ -219,15 +246,16 @@ std::vector<fs::path> recent_files() {
   std::error_code none;
   const Json json = read_quietly(recent_list());
   if (!json.is_array()) return files;
-  for (const Json& one : json)
-    if (one.is_string() && fs::exists(one.get<std::string>(), none))
-      files.emplace_back(one.get<std::string>());
+  for (const Json& one : json) {
+    if (!one.is_string()) continue;
+    const fs::path file = plain_path(one.get<std::string>());
+    if (fs::exists(file, none) && std::ranges::count(files, file) == 0) files.push_back(file);
+  }
   return files;
 }
 
 void remember_file(const fs::path& path) {
-  std::error_code none;
-  const fs::path whole = fs::absolute(path, none);
+  const fs::path whole = plain_path(path);
   std::vector<fs::path> files = recent_files();
   std::erase(files, whole);
   files.insert(files.begin(), whole);

@@ -38,6 +38,13 @@ fs::path home() {
   return home != nullptr ? home : "/";
 }
 
+/// Returns where the last part "~" begins; nullopt if there is none. A name may begin with "~",
+/// too.
+std::optional<std::size_t> last_home(const std::string& path) {
+  const std::size_t at = path.ends_with("/~") ? path.size() - 2 : path.rfind("/~/");
+  return at == std::string::npos ? std::nullopt : std::optional(at + 1);
+}
+
 bool begins(const FolderEntry& entry, const std::string& name) {
   return lower_case(entry.name).starts_with(lower_case(name));
 }
@@ -141,12 +148,27 @@ TypedPath typed_path(const std::string& text) {
   // A path typed after another one replaces it: /work//home, /work/~.
   std::string whole = text;
   if (const std::size_t at = whole.rfind("//"); at != std::string::npos) whole.erase(0, at + 1);
-  if (const std::size_t at = whole.rfind("/~"); at != std::string::npos) whole.erase(0, at + 1);
+  if (const auto at = last_home(whole)) whole.erase(0, *at);
   if (whole == "~" || whole.starts_with("~/")) whole = home().string() + whole.substr(1);
   std::error_code none;
   if (!whole.starts_with('/')) whole = (fs::current_path(none) / whole).string();
   const std::size_t slash = whole.rfind('/');
   return {fs::path(whole.substr(0, slash + 1)).lexically_normal(), whole.substr(slash + 1)};
+}
+
+std::vector<std::string> short_names(std::span<const fs::path> paths) {
+  std::vector<std::string> names;
+  for (const fs::path& path : paths) {
+    fs::path name = path.filename(), above = path.parent_path();
+    const auto has_name = [&](const fs::path& other) {
+      return other != path && other.string().ends_with("/" + name.string());
+    };
+    for (; above.has_filename() && std::ranges::any_of(paths, has_name);
+         above = above.parent_path())
+      name = above.filename() / name;
+    names.push_back(name.string());
+  }
+  return names;
 }
 
 std::vector<FolderEntry> matching(std::span<const FolderEntry> entries, const std::string& name) {

@@ -92,6 +92,9 @@ struct TypedPath {
 };
 TypedPath typed_path(const std::string& text);
 
+/// Returns the last parts of each path, as many as distinguish it from the others.
+std::vector<std::string> short_names(std::span<const std::filesystem::path> paths);
+
 /// The entries that contain the typed name, in any case, those that begin with it first.
 std::vector<FolderEntry> matching(std::span<const FolderEntry> entries, const std::string& name);
 

@@ -251,7 +251,7 @@ void LiveHost::open(WorkbenchState& state,
       throw InputError(address + ": has no images to play");
     session_.reset();
     state.live.reset();
-    worker.cancel();
+    worker.cancel(state.document.recording);
     link.worker = link.survey = link.scan = {};
     link.loading = link.calibrating = link.finding_start = false;
     frozen_.reset();

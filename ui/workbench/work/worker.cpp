@@ -58,14 +58,17 @@ bool receive(WorkbenchState& state, WorkerLink& link, Worker& worker, Survey& su
   link.survey = survey.status();
   const Published published = worker.latest();
   const bool opened = show_recording(state, link, published, survey);
-  if (published.inspection && published.inspection != link.published)
-    survey.add(published.inspection);
   const Document& document = state.document;
-  if (published.inspection != link.published || document.cube_ray != link.cube_ray ||
+  const bool shown = published.recording == document.recording;
+  // The rest of a recording that needs to be shown as a whole could not be opened.
+  if (!shown && published.recording && !published.recording->complete && !link.worker.busy)
+    worker.cancel(document.recording);
+  const auto inspection = shown ? published.inspection : link.published;
+  if (inspection && inspection != link.published) survey.add(inspection);
+  if (inspection != link.published || document.cube_ray != link.cube_ray ||
       document.other_cube_rays != link.other_cube_rays)
-    state.results.inspection =
-        with_cube(published.inspection, document.cube_ray, document.other_cube_rays);
-  link.published = published.inspection;
+    state.results.inspection = with_cube(inspection, document.cube_ray, document.other_cube_rays);
+  link.published = inspection;
   link.cube_ray = document.cube_ray;
   link.other_cube_rays = document.other_cube_rays;
   state.results.surveyed = survey.results();
@@ -74,6 +77,7 @@ bool receive(WorkbenchState& state, WorkerLink& link, Worker& worker, Survey& su
     say(state, "cannot study the normals of the window: " + study->error, Severity::error);
   state.results.study = study;
   if (link.worker.error != link.error) {
+    retract_error(state, link.error);
     link.error = link.worker.error;
     if (!link.error.empty()) say(state, link.error, Severity::error);
   }
@@ -174,6 +178,7 @@ bool open_path(WorkbenchState& state, WorkerLink& link, Worker& worker, const fs
   auto& waiting = state.files.waiting_session;
   if (waiting && waiting->recording.filename() != path.filename()) waiting.reset();
   link.opening = path;
+  worker.cancel(state.document.recording);
   worker.open(path);
   return true;
 }
@@ -199,6 +204,7 @@ bool open_read(WorkbenchState& state, WorkerLink& link, Worker& worker, ReadFile
     return false;
   }
   link.opening = read.file;
+  worker.cancel(state.document.recording);
   worker.open(recording);
   return true;
 }
@@ -212,10 +218,11 @@ bool cancel_report(WorkbenchState& state) {
 }
 
 void cancel(WorkbenchState& state, WorkerLink& link, Worker& worker) {
-  worker.cancel();
+  worker.cancel(state.document.recording);
   stop_reading(link);
   link.finding_start = false;
   const bool loading = std::exchange(link.loading, false) || link.reading.busy;
+  if (loading) state.files.waiting_session.reset();
   const bool calibrating = std::exchange(link.calibrating, false);
   link.survey_canceled = (!loading && !calibrating) || link.survey.busy || link.scan.busy;
   say(state,
@@ -262,8 +269,8 @@ void Worker::show(Opened opened) {
 
 void Worker::calibrate() {
   const auto lock = job_.lock();
-  if (!published_.recording || next_opening_ || !calibrate_) return;
-  open_by([this, calibrate = calibrate_](const std::stop_token& stop) {
+  if (!current_.published.recording || next_opening_ || !current_.calibrate) return;
+  open_by([this, calibrate = current_.calibrate](const std::stop_token& stop) {
     const Progress report = progress(stop, "calibrating: ");
     report("opening the images", 0, 0);
     return calibrate(stop, report);
@@ -272,24 +279,50 @@ void Worker::calibrate() {
 
 void Worker::undo_calibration() {
   const auto lock = job_.lock();
-  if (!undo_calibration_ || next_opening_) return;
-  open_by([undo = undo_calibration_](const std::stop_token& /*stop*/) { return undo(); });
+  if (!current_.undo_calibration || next_opening_) return;
+  open_by([undo = current_.undo_calibration](const std::stop_token& /*stop*/) { return undo(); });
 }
 
 void Worker::request(const Settings& settings) {
   const auto lock = job_.lock();
-  if (!published_.recording) return;
+  if (!current_.published.recording) return;
   if (!opening_) job_.cancel();
   next_settings_ = settings;
   job_.wake();
 }
 
-void Worker::cancel() {
+void Worker::cancel(const std::shared_ptr<const Recording>& shown) {
   const auto lock = job_.lock();
   job_.cancel();
   next_opening_ = nullptr;
   next_settings_.reset();
   opening_ = false;
+  if (before_ && current_.published.recording != shown) {
+    const std::uint64_t generation = current_.published.generation;
+    current_ = *std::exchange(before_, {});
+    current_.published.generation = generation + 1;
+  }
+}
+
+/// Called with the lock.
+void Worker::publish(Opened opened) {
+  Current next{{std::move(opened.recording),
+                nullptr,
+                current_.published.generation + 1,
+                std::move(opened.calibration)},
+               std::move(opened.inspect),
+               std::move(opened.calibrate),
+               std::move(opened.undo_calibration)};
+  std::swap(current_, next);
+  before_.reset();
+  next_settings_.reset();
+  if (!opened.rest) return;
+  before_ = std::move(next);
+  next_opening_ = [this, rest = std::move(opened.rest)](const std::stop_token& stop) {
+    return rest(stop, progress(stop));
+  };
+  opening_ = true;
+  job_.wake();
 }
 
 BackgroundJob::Job Worker::next() {
@@ -297,31 +330,16 @@ BackgroundJob::Job Worker::next() {
   if (opening_)
     return [this, opening = std::exchange(next_opening_, nullptr)](const std::stop_token& stop) {
       Opened opened = opening(stop);
-      job_.publish(stop, [&] {
-        inspect_ = std::move(opened.inspect);
-        calibrate_ = std::move(opened.calibrate);
-        undo_calibration_ = std::move(opened.undo_calibration);
-        published_ = {std::move(opened.recording),
-                      nullptr,
-                      published_.generation + 1,
-                      std::move(opened.calibration)};
-        next_settings_.reset();
-        if (!opened.rest) return;
-        next_opening_ = [this, rest = std::move(opened.rest)](const std::stop_token& token) {
-          return rest(token, progress(token));
-        };
-        opening_ = true;
-        job_.wake();
-      });
+      job_.publish(stop, [&] { publish(std::move(opened)); });
     };
   if (!next_settings_) return nullptr;
-  return [this, inspect = inspect_, settings = *std::exchange(next_settings_, {})](
+  return [this, inspect = current_.inspect, settings = *std::exchange(next_settings_, {})](
              const std::stop_token& stop) {
     auto inspection = inspect(settings, stop, progress(stop));
     if (!inspection) return;
     job_.publish(stop, [&] {
-      published_.inspection = std::move(inspection);
-      ++published_.generation;
+      current_.published.inspection = std::move(inspection);
+      ++current_.published.generation;
     });
   };
 }
@@ -352,6 +370,7 @@ void synchronize(
   if (open_example) {
     stop_reading(link);
     link.opening.clear();
+    worker.cancel(state.document.recording);
     worker.open(link.example);
   }
   link.reading = link.reader->status();  // before `take`, so that idle implies that it was taken

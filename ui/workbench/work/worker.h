@@ -153,29 +153,36 @@ class Worker {
   void undo_calibration();
   /// Inspects the open recording, if any, unless another one is opened meanwhile.
   void request(const Settings& settings);
-  /// Stops the running job and discards waiting requests.
-  void cancel();
+  /// Stops the running job and discards waiting requests. If the open recording is incomplete and
+  /// not `shown`, returns to the one before.
+  void cancel(const std::shared_ptr<const Recording>& shown);
 
   JobStatus status() const { return locked_status(job_); }
-  Published latest() const { return locked(job_, published_); }
+  Published latest() const { return locked(job_, current_.published); }
 
   static Opened with_inspector(std::shared_ptr<const Recording> recording);
 
  private:
   using Opening = std::function<Opened(const std::stop_token&)>;
+  /// The open recording and its functions.
+  struct Current {
+    Published published;
+    Inspect inspect;
+    Calibrate calibrate;
+    std::function<Opened()> undo_calibration;  ///< null: not calibrated
+  };
 
   BackgroundJob::Job next();
   void open_by(Opening opening);
+  void publish(Opened opened);
   Progress progress(const std::stop_token& stop, const std::string& prefix = "");
 
   Open open_;
   Opening next_opening_;  ///< null: none waiting
   std::optional<Settings> next_settings_;
   bool opening_ = false;  ///< waiting or running
-  Published published_;
-  Inspect inspect_;                           ///< for the open recording
-  Calibrate calibrate_;                       ///< for the open recording
-  std::function<Opened()> undo_calibration_;  ///< for the open recording; null: not calibrated
+  Current current_;
+  std::optional<Current> before_;  ///< the recording before, while `current_` is incomplete
   BackgroundJob job_;
 };
 

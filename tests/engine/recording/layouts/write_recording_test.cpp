@@ -3,6 +3,7 @@
 #include "engine/recording/layouts/write_recording.h"
 
 #include "engine/base/error.h"
+#include "engine/files/text_file.h"
 #include "engine/truth/truth.h"
 #include "engine/window/gyroscope.h"
 #include "tests/engine/recording/bags/small_bag.h"
@@ -105,6 +106,41 @@ TEST_F(BagWriting, RefusesForeignFilesBesideAWrittenBag) {
   folder.write("board.yaml", "pattern: chessboard\n");
   EXPECT_THAT(error("new.mcap"), HasSubstr("board.yaml: belongs to another recording"));
   EXPECT_FALSE(fs::exists(folder.path() / "new.mcap"));
+}
+
+TEST_F(BagWriting, RefusesSidecarsThatWouldChangeOtherRecordings) {
+  Recording guessed = *open_recording(small_bag());
+  fs::remove(folder.path() / "small.bag");
+  guessed.camera_source = CameraSource::guess;
+  guessed.path = folder.path() / "source.mp4";
+  folder.write("source.mp4", "");
+  const auto write = [&] {
+    write_recording(guessed, {}, RecordingFormat::mcap, folder.path() / "new.mcap");
+  };
+  for (const char* other : {"other.mp4", "0001.png", "mav0/cam0/data.csv"}) {
+    folder.write(other, "");
+    EXPECT_THAT(error_of(write), HasSubstr("would be read with the camera.yaml of the new bag"))
+        << other;
+    EXPECT_FALSE(is_file(folder.path() / "camera.yaml"));
+    fs::remove_all(folder.path() / *fs::path(other).begin());
+  }
+  write();
+  EXPECT_TRUE(is_file(folder.path() / "camera.yaml"));
+}
+
+TEST_F(BagWriting, RemovesSidecarsIfTheBagCannotBeRenamed) {
+  Recording guessed = *open_recording(small_bag());
+  guessed.camera_source = CameraSource::guess;
+  const fs::path out = folder.path() / "out";
+  fs::create_directory(out);
+  EXPECT_THAT(error_of([&] {
+                write_recording(
+                    guessed, guessed.truth, RecordingFormat::mcap, out / "new.mcap", [&](int, int) {
+                      fs::create_directories(out / "new.mcap" / "in");
+                    });
+              }),
+              HasSubstr("cannot be written"));
+  EXPECT_EQ(std::distance(fs::directory_iterator(out), {}), 1) << "only the folder new.mcap";
 }
 
 /// Returns a complete recording with numbers that need all digits.

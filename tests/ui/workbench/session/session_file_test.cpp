@@ -205,7 +205,8 @@ TEST_F(SessionFile, ReportsInvalidFields) {
 
 TEST_F(SessionFile, RecentFilesAreUniqueAndLatestFirst) {
   fs::create_directories(folder_ / "other");
-  for (const char* name : {"desk", "other", "desk", "gone"}) remember_file(folder_ / name);
+  for (const char* name : {"desk", "other", "desk", "gone", "desk/", "./desk"})
+    remember_file(folder_ / name);
   EXPECT_THAT(recent_files(), ElementsAre(folder_ / "desk", folder_ / "other"));
 }
 

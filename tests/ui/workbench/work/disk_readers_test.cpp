@@ -145,12 +145,19 @@ TEST(Browsing, SplitsATypedPath) {
                                            {"/a/b/", "/a/b/", ""},
                                            {"/a/../c/d", "/c/", "d"},
                                            {"x", fs::current_path() / "", "x"},
-                                           {"/a/b//c/d", "/c/", "d"}}) {
+                                           {"/a/b//c/d", "/c/", "d"},
+                                           {"/a/~b/c", "/a/~b/", "c"},
+                                           {"/a/~b", "/a/", "~b"}}) {
     EXPECT_EQ(typed_path(text).folder, folder) << text;
     EXPECT_EQ(typed_path(text).name, name) << text;
   }
   EXPECT_EQ(typed_path("/a/~/d").folder, typed_path("~/").folder);
   EXPECT_EQ(typed_path("~").folder, typed_path("~/").folder.parent_path().parent_path() / "");
+}
+
+TEST(Browsing, ShortNamesTellPathsApart) {
+  const std::vector<fs::path> paths = {"/data/a/desk", "/data/b/desk", "/data/b/room", "/desk"};
+  EXPECT_THAT(short_names(paths), ElementsAre("a/desk", "b/desk", "room", "desk"));
 }
 
 TEST(Browsing, MatchesAnyPartAndHiddenEntriesOnRequest) {

@@ -43,6 +43,53 @@ TEST_F(WorkerLinkTest, KeepsFirstFramesOfAVideoWhenReadingItIsCanceled) {
   EXPECT_EQ(state_.messages.text, "Opening canceled");
 }
 
+TEST_F(WorkerLinkTest, CanceledSessionLeavesTheOpenRecordingWithItsResults) {
+  open_and_settle("desk");
+  const auto desk = state_.document.recording;
+  hold_ = true;
+  state_.files.waiting_session = SavedSession{"long.mkv", std::make_shared<const WorkbenchState>()};
+  apply(state_, OpenPath{"long.mkv"});
+  while (synchronize(), worker_.latest().recording == desk) std::this_thread::yield();
+  synchronize();
+  EXPECT_EQ(state_.document.recording, desk) << "the session needs the whole video";
+  EXPECT_NE(state_.results.inspection, nullptr);
+  run_once("escape");
+  EXPECT_FALSE(state_.files.waiting_session);
+  hold_ = false;
+  run_and_settle("compute");
+  EXPECT_EQ(state_.document.recording, desk);
+  ASSERT_NE(state_.results.inspection, nullptr);
+  EXPECT_EQ(state_.results.inspection->recording, desk);
+}
+
+TEST_F(WorkerLinkTest, KeepsWhatTheUserDidWhileAVideoIsReadOn) {
+  hold_ = true;
+  apply(state_, OpenPath{"long.mkv"});
+  while (synchronize(), !state_.document.recording) std::this_thread::yield();
+  Settings settings = state_.document.settings;
+  settings.exclude = {3};
+  change_settings(state_, settings);
+  move_cube(state_, Vector3d(0.1, 0, 1));
+  state_.selection = selected(std::vector<std::int64_t>{5});
+  state_.view.time_span = {10, 20};
+  hold_ = false;
+  settle();
+  EXPECT_EQ(state_.frame_count(), 900);
+  EXPECT_THAT(state_.document.settings.exclude, ElementsAre(3));
+  EXPECT_TRUE(state_.document.cube_ray.has_value());
+  EXPECT_THAT(state_.selection.tracks, ElementsAre(5));
+  EXPECT_EQ(state_.view.time_span, (TimeSpan{10, 20}));
+  EXPECT_EQ(state_.document.undo.size(), 2U);
+}
+
+TEST_F(WorkerLinkTest, MessageLineForgetsAnErrorAfterSuccess) {
+  open_and_settle("desk");
+  open_and_settle("bad");
+  EXPECT_EQ(state_.messages.text, "bad: no such folder");
+  run_and_settle("compute");
+  EXPECT_EQ(state_.messages.text, "");
+}
+
 TEST_F(WorkerLinkTest, ScanSwitchedOnAfterACanceledOpeningRuns) {
   open_and_settle("desk");
   hold_ = true;

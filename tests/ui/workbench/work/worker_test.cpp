@@ -143,7 +143,7 @@ TEST_F(WorkerTest, CancelStopsTheRunningRequestAndKeepsTheLastResult) {
   begun_.acquire();
   request_and_hold(6);
   ASSERT_EQ(worker_->status().stage, "tracking");
-  worker_->cancel();
+  worker_->cancel(worker_->latest().recording);
   wait();
   EXPECT_EQ(worker_->latest().inspection->settings.start, 5);
   const JobStatus status = worker_->status();
@@ -209,7 +209,7 @@ TEST_F(WorkerTest, CalibrationReportsProgressAndCanBeCanceled) {
   begun_.acquire();
   EXPECT_EQ(worker_->status().stage, "calibrating: following a plane");
   EXPECT_EQ(worker_->status().of, 8);
-  worker_->cancel();
+  worker_->cancel(worker_->latest().recording);
   wait();
   EXPECT_EQ(worker_->latest().recording->name, "desk");
   EXPECT_EQ(worker_->status().error, "");
