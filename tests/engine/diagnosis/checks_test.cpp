@@ -15,6 +15,7 @@ namespace {
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
+using testing::SizeIs;
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
@@ -61,10 +62,23 @@ TEST(Verdict, IsNeverReadyByNumbersThatAreNotFinite) {
       numbers.*field = bad;
       const Verdict verdict = verdict_by(numbers);
       EXPECT_EQ(verdict.readiness, Readiness::degenerate);
+      EXPECT_FALSE(verdict.*field);
+      EXPECT_THAT(findings_of({.numbers = &numbers}, {Of::length}), SizeIs(1))
+          << "no further check of such numbers";
       EXPECT_THAT(verdict.reason,
                   testing::Not(testing::AnyOf(HasSubstr("nan"), HasSubstr("inf "))));
     }
   }
+}
+
+TEST(Findings, AreSortedByLevel) {
+  Verdict numbers = good_numbers();
+  numbers.normal_sigma_deg = 12;
+  numbers.largest_translation = 0.05;
+  const auto found = findings_of({.numbers = &numbers}, {Of::length});
+  ASSERT_THAT(found, SizeIs(2));
+  EXPECT_EQ(found[0].key, "uncertain-normal");
+  EXPECT_EQ(found[1].key, "little-parallax") << "weak, although the table has it first";
 }
 
 TEST(GrowthVerdicts, AreLoweredByFindingsOfTheWholeWindow) {
@@ -157,6 +171,16 @@ TEST(IgnoredFindings, BecomeNotes) {
   ASSERT_EQ(found.size(), 1U);
   EXPECT_EQ(found[0].level, Level::note);
   EXPECT_TRUE(found[0].ignored);
+}
+
+TEST(IgnoredFindings, KeepTheirLevelIfTheyDecide) {
+  Verdict numbers = good_numbers();
+  numbers.largest_translation = 0.05;
+  const std::vector<std::string> keys = {"little-parallax"};
+  const auto found = findings_of({.numbers = &numbers}, {Of::length}, keys);
+  ASSERT_THAT(found, SizeIs(1));
+  EXPECT_EQ(found[0].level, Level::weak);
+  EXPECT_FALSE(found[0].ignored);
 }
 
 TEST(IgnoredFindings, RefusesKeysThatNoCheckHasOrThatDecide) {
