@@ -139,6 +139,12 @@ TEST(ImplausibleIntrinsics, NameTheSizeThatTheyWereMadeFor) {
     const auto found = found_in(camera);
     ASSERT_EQ(found.size(), 1U) << scale;
     EXPECT_THAT(found[0].sentence, HasSubstr("for images of about 8")) << found[0].sentence;
+    EXPECT_EQ(found[0].view, "camera");
+    const auto scaled =
+        findings_of({.camera = &camera, .intrinsics_scale = 2}, {Of::recording}).at(0);
+    if (scale != 0.9)
+      EXPECT_EQ(scaled.command, fmt::format("set intrinsics_scale {:.4g}", 2 * scale));
+    if (scale != 0.9) EXPECT_THAT(scaled.advice, HasSubstr(fmt::format("by {:.4g} (", 2 * scale)));
     if (scale != 0.9) EXPECT_THAT(found[0].advice, HasSubstr(fmt::format("by {:.4g} (", scale)));
   }
 }
@@ -156,6 +162,15 @@ TEST(ImplausibleIntrinsics, AreAbsentInPublishedCalibrations) {
       {1920, 1440, 1593.4, 1593.4, 953.3, 722.9},                               // a phone
   };
   for (const Camera& camera : cameras) EXPECT_THAT(found_in(camera), IsEmpty()) << camera.width;
+}
+
+TEST(ImplausibleIntrinsics, AreNotLookedForInAGuess) {
+  const Camera camera = camera_with(500, 500, 0, 0);
+  const auto found = findings_of({.camera = &camera, .camera_is_guess = true}, {Of::recording});
+  ASSERT_THAT(found, SizeIs(1));
+  EXPECT_EQ(found[0].key, "guessed-camera");
+  EXPECT_EQ(found[0].level, Level::weak);
+  EXPECT_THAT(found_in(Camera{}), IsEmpty()) << "the size of the images is unknown";
 }
 
 TEST(ImplausibleIntrinsics, AllowPixelsAsTheVideoStatesThem) {

@@ -65,6 +65,9 @@ TEST(StaticTracksFinding, IsANoteOnACarrierInView) {
   EXPECT_NE(findings[0].sentence.find(
                 fmt::format("{} of 150 tracks do not move", marked.window.static_tracks.size())),
             std::string::npos);
+  EXPECT_NE(findings[0].sentence.find("carrier, or dirt; they"), std::string::npos);
+  EXPECT_EQ(findings[0].sentence.find("move by 0 px"), std::string::npos);
+  EXPECT_EQ(findings[0].advice, "");
 }
 
 TEST(StaticTracksFinding, IsWeakIfTheyAreTheMajority) {
@@ -72,6 +75,7 @@ TEST(StaticTracksFinding, IsWeakIfTheyAreTheMajority) {
   ASSERT_EQ(findings.size(), 1U);
   EXPECT_EQ(findings[0].level, Level::weak);
   EXPECT_TRUE(findings[0].command.starts_with("mask not ")) << findings[0].command;
+  EXPECT_EQ(findings[0].advice, "if the camera moves, mask them");
 }
 
 TEST(StaticTracksFinding, IsWeakIfTheySurroundTheOthers) {
@@ -126,6 +130,14 @@ TEST(MovingObjects, AreFoundInTheirRegion) {
     const auto found = moving_objects(simulation.window, true_result(simulation));
     EXPECT_TRUE(std::ranges::includes(object, found));
     EXPECT_GE(found.size(), 0.7 * object.size()) << int(motion);
+    std::vector<std::int64_t> ids(simulation.window.track_count());
+    std::iota(ids.begin(), ids.end(), 100);
+    const Initialization result = true_result(simulation);
+    const auto findings =
+        check::moving_objects({.window = &simulation.window, .ids = ids, .result = &result});
+    ASSERT_EQ(findings.size(), 1U);
+    EXPECT_EQ(findings[0].level, Level::note);
+    EXPECT_EQ(findings[0].tracks.front(), 100 + found.front());
   }
 }
 
