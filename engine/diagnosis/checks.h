@@ -37,6 +37,7 @@ Findings truth_contradicts(const Evidence& evidence);
 
 // track_checks.cpp: what the tracks do in the image.
 Findings static_tracks(const Evidence& evidence);
+Findings changing_focal_length(const Evidence& evidence);
 Findings moving_objects(const Evidence& evidence);
 
 // input_checks.cpp: camera, gyroscope and what readers and stages remarked.

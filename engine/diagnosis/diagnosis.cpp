@@ -65,6 +65,7 @@ std::span<const Check> checks() {
       {"method-failed", "The method failed", Of::result, false, method_failed},
       {"late-clock", "The gyroscope's clock is late", Of::result, false, late_clock},
       {"rolling-shutter", "A rolling shutter that the method neglects", Of::result, false, neglected_rolling_shutter},
+      {"changing-focal-length", "The focal length changes", Of::result, true, changing_focal_length},
       {"little-parallax", "The camera hardly moved", Of::length, false, little_parallax},
       {"uncertain-lens", "A typical calibration error decides", Of::result, false, uncertain_lens},
       {"uneven-surface", "The surface is uneven", Of::result, false, uneven_surface},

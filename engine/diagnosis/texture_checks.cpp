@@ -22,6 +22,7 @@ Findings repeated_texture(const Evidence& e) {
       frames.size(),
       e.tracks->frame_count() - 1);
   for (int& frame : frames) frame += e.tracks->start;
+  frames.insert(frames.begin(), e.tracks->start);  // it shows the second matches
   return {{.level = Level::weak,
            .sentence = std::move(sentence),
            .advice = "move more slowly, and show something that does not repeat",

@@ -1,6 +1,7 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/diagnosis/checks.h"
+#include "engine/diagnosis/focal_change.h"
 #include "engine/diagnosis/moving_objects.h"
 #include "engine/geometry/statistics.h"
 
@@ -12,6 +13,15 @@
 
 namespace gpo::check {
 namespace {
+
+/// Changes by a focus motor. Smaller ones are within the stated uncertainty; larger ones are
+/// estimates of windows that do not determine them.
+constexpr double kLeastFocalChange = 0.003, kMostFocalChange = 0.05;
+/// Fixed lenses: at most 3.0 in 73 real windows of 20 frames, and below 4 in 782 simulated ones of
+/// 10 to 30 frames (noise of 0.2 and 0.5 px, a rolling shutter, a calibration 0.3 % off) but for
+/// one whose normal was 35 deg off. A change by 1 % exceeds it in 48 % of the windows with 0.2 px
+/// of noise, in 23 % with 0.5 px.
+constexpr double kFocalSigmas = 4;
 
 std::vector<std::int64_t> ids_of(const Evidence& e, const std::vector<int>& columns) {
   std::vector<std::int64_t> ids;
@@ -98,6 +108,21 @@ Findings static_tracks(const Evidence& e) {
   finding.advice = "if the camera moves, mask them";
   if (e.tracks != nullptr) finding.command = mask_around(e.tracks->raw_px[0], fixed, others);
   return {finding};
+}
+
+Findings changing_focal_length(const Evidence& e) {
+  if (e.window == nullptr || e.result == nullptr) return {};
+  const auto change = focal_change(*e.window, *e.result);
+  if (!change) return {};
+  const double size = std::abs(change->share);
+  if (!(size > kLeastFocalChange && size < kMostFocalChange)) return {};
+  if (!(size > kFocalSigmas * change->sigma_share)) return {};
+  return {{.level = Level::weak,
+           .sentence = fmt::format("the focal length changes by {:+.1f} % in the window, {:.0f} "
+                                   "standard deviations",
+                                   100 * change->share,
+                                   size / change->sigma_share),
+           .advice = "lock the focus and the zoom"}};
 }
 
 Findings moving_objects(const Evidence& e) {

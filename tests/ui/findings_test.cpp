@@ -190,6 +190,38 @@ TEST_F(FindingsGroup, PointingAtARowHighlightsItsTracks) {
   EXPECT_TRUE(highlight_of(state_).picked.empty());
 }
 
+TEST_F(FindingsGroup, SecondMatchOfASelectedTrackIsAnArrowInTheReferenceFrame) {
+  Inspection inspection = with_findings({});
+  const int column = 40;
+  const Eigen::Vector2d period_px(60, 45);
+  Tracks tracks = *inspection.tracks;
+  tracks.repetition =
+      Repetition{period_px.replicate(1, tracks.track_count()), std::vector(30, 0.0)};
+  inspection.findings = {{.key = "repeated-texture",
+                          .level = Level::weak,
+                          .tracks = {tracks.ids[column]},
+                          .frames = {tracks.start, tracks.start + 3},
+                          .view = "image"}};
+  inspection.tracks = std::make_shared<const Tracks>(tracks);
+  state_.view.toggles.tracks = state_.view.toggles.legend = false;
+  WindowTest::open(inspection);
+  const auto colored = [&](double share) {
+    draw_times(3);
+    const Eigen::Vector2d at =
+        to_screen(map_image(inspection.recording->camera, screen_rect(layout().image), {}, false),
+                  tracks.raw_px[0].col(column) + share * period_px);
+    const cv::Rect around(static_cast<int>(at.x()) - 8, static_cast<int>(at.y()) - 8, 17, 17);
+    return count_pixels(context_.read_bgr()(around), color_of(Role::warning), 70);
+  };
+  EXPECT_EQ(colored(1), 0);
+  run_line(state_, "finding repeated-texture");
+  EXPECT_GT(colored(0.5), 0);
+  EXPECT_GT(3 * colored(1), 2 * colored(0.5)) << "the head beside half of the line";
+  EXPECT_EQ(colored(1.5), 0);
+  run_line(state_, "frame " + std::to_string(tracks.start + 3));
+  EXPECT_EQ(colored(0.5), 0);
+}
+
 TEST_F(FindingsGroup, DoubtfulPrincipalPointIsACrossInTheImage) {
   const auto colored = [&](std::vector<Finding> findings) {
     open(std::move(findings));

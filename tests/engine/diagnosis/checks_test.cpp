@@ -12,8 +12,10 @@
 namespace gpo::test {
 namespace {
 
+using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
+using testing::SizeIs;
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
@@ -60,10 +62,23 @@ TEST(Verdict, IsNeverReadyByNumbersThatAreNotFinite) {
       numbers.*field = bad;
       const Verdict verdict = verdict_by(numbers);
       EXPECT_EQ(verdict.readiness, Readiness::degenerate);
+      EXPECT_FALSE(verdict.*field);
+      EXPECT_THAT(findings_of({.numbers = &numbers}, {Of::length}), SizeIs(1))
+          << "no further check of such numbers";
       EXPECT_THAT(verdict.reason,
                   testing::Not(testing::AnyOf(HasSubstr("nan"), HasSubstr("inf "))));
     }
   }
+}
+
+TEST(Findings, AreSortedByLevel) {
+  Verdict numbers = good_numbers();
+  numbers.normal_sigma_deg = 12;
+  numbers.largest_translation = 0.05;
+  const auto found = findings_of({.numbers = &numbers}, {Of::length});
+  ASSERT_THAT(found, SizeIs(2));
+  EXPECT_EQ(found[0].key, "uncertain-normal");
+  EXPECT_EQ(found[1].key, "little-parallax") << "weak, although the table has it first";
 }
 
 TEST(GrowthVerdicts, AreLoweredByFindingsOfTheWholeWindow) {
@@ -124,6 +139,12 @@ TEST(ImplausibleIntrinsics, NameTheSizeThatTheyWereMadeFor) {
     const auto found = found_in(camera);
     ASSERT_EQ(found.size(), 1U) << scale;
     EXPECT_THAT(found[0].sentence, HasSubstr("for images of about 8")) << found[0].sentence;
+    EXPECT_EQ(found[0].view, "camera");
+    const auto scaled =
+        findings_of({.camera = &camera, .intrinsics_scale = 2}, {Of::recording}).at(0);
+    if (scale != 0.9)
+      EXPECT_EQ(scaled.command, fmt::format("set intrinsics_scale {:.4g}", 2 * scale));
+    if (scale != 0.9) EXPECT_THAT(scaled.advice, HasSubstr(fmt::format("by {:.4g} (", 2 * scale)));
     if (scale != 0.9) EXPECT_THAT(found[0].advice, HasSubstr(fmt::format("by {:.4g} (", scale)));
   }
 }
@@ -143,6 +164,15 @@ TEST(ImplausibleIntrinsics, AreAbsentInPublishedCalibrations) {
   for (const Camera& camera : cameras) EXPECT_THAT(found_in(camera), IsEmpty()) << camera.width;
 }
 
+TEST(ImplausibleIntrinsics, AreNotLookedForInAGuess) {
+  const Camera camera = camera_with(500, 500, 0, 0);
+  const auto found = findings_of({.camera = &camera, .camera_is_guess = true}, {Of::recording});
+  ASSERT_THAT(found, SizeIs(1));
+  EXPECT_EQ(found[0].key, "guessed-camera");
+  EXPECT_EQ(found[0].level, Level::weak);
+  EXPECT_THAT(found_in(Camera{}), IsEmpty()) << "the size of the images is unknown";
+}
+
 TEST(ImplausibleIntrinsics, AllowPixelsAsTheVideoStatesThem) {
   const Camera camera{720, 576, 700, 766, 359.5, 287.5};
   EXPECT_EQ(found_in(camera).size(), 1U);
@@ -156,6 +186,16 @@ TEST(IgnoredFindings, BecomeNotes) {
   ASSERT_EQ(found.size(), 1U);
   EXPECT_EQ(found[0].level, Level::note);
   EXPECT_TRUE(found[0].ignored);
+}
+
+TEST(IgnoredFindings, KeepTheirLevelIfTheyDecide) {
+  Verdict numbers = good_numbers();
+  numbers.largest_translation = 0.05;
+  const std::vector<std::string> keys = {"little-parallax"};
+  const auto found = findings_of({.numbers = &numbers}, {Of::length}, keys);
+  ASSERT_THAT(found, SizeIs(1));
+  EXPECT_EQ(found[0].level, Level::weak);
+  EXPECT_FALSE(found[0].ignored);
 }
 
 TEST(IgnoredFindings, RefusesKeysThatNoCheckHasOrThatDecide) {
@@ -185,7 +225,7 @@ TEST(RepeatedTexture, IsWeakInAmbiguousFrames) {
   EXPECT_EQ(finding.level, Level::weak);
   EXPECT_THAT(finding.sentence, HasSubstr("every 24 px, and in 1 of 3 frames"));
   EXPECT_EQ(finding.tracks, tracks.ids);
-  EXPECT_EQ(finding.frames, std::vector<int>{10});
+  EXPECT_THAT(finding.frames, ElementsAre(7, 10)) << "the reference frame first";
 }
 
 }  // namespace

@@ -35,6 +35,7 @@ TEST(FalseAlarms, AreAtMostOnePercentOf200SimulatedWindows) {
   for (const char* key : {"not-finite",
                           "implausible-intrinsics",
                           "static-tracks",
+                          "changing-focal-length",
                           "repeated-texture",
                           "camera-at-rest",
                           "gyroscope-bias",

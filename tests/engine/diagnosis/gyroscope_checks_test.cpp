@@ -97,6 +97,14 @@ TEST(CameraAtRest, IsSeenByTracksThatDoNotMove) {
   expect_rests({*rests}, "12 tracks do not move");
   EXPECT_EQ(rests->tracks.size(), 12U);
   EXPECT_EQ(rests->tracks.front(), 100 + moving);
+  EXPECT_EQ(find_finding(found(window, on_tripod(window, false), result_of(window, even), ids),
+                         "camera-at-rest"),
+            nullptr)
+      << "without an accelerometer";
+  window.static_tracks.resize(9);
+  EXPECT_EQ(find_finding(found(window, tripod, result_of(window, even), ids), "camera-at-rest"),
+            nullptr)
+      << "too few";
 }
 
 TEST(CameraAtRest, CountsRejectedSolutions) {
@@ -155,6 +163,24 @@ TEST(GyroscopeBias, ContradictsItsPriorBySixStandardDeviations) {
     EXPECT_THAT(biased(120, estimated)[0].sentence,
                 HasSubstr("0.240 rad/s (13.8 deg/s), 120 standard deviations from its prior"));
   }
+}
+
+TEST(GyroscopeBias, IsComparedWithItsPriorAndWithAnyGyroscope) {
+  Window window;
+  window.gyro = GyroSensitivity{.prior_rad_s = Vector3d(0, 0.3, 0), .prior_sigma_rad_s = 0.1};
+  Gyroscope gyroscope;
+  gyroscope.bias_source = "a rest";
+  Initialization result;
+  result.ok = true;
+  const auto found_with = [&](double bias_rad_s) {
+    result.bias_rad_s = Vector3d(0, bias_rad_s, 0);
+    return check::contradicted_bias(
+        {.gyroscope = &gyroscope, .window = &window, .result = &result});
+  };
+  EXPECT_THAT(found_with(0.45), IsEmpty());
+  ASSERT_EQ(found_with(0.56).size(), 1U) << "no gyroscope has such a bias";
+  EXPECT_THAT(found_with(0.56)[0].sentence,
+              HasSubstr("3 standard deviations from its prior (a rest)"));
 }
 
 TEST(GyroscopeBias, RefusesAWrongMinimum) {

@@ -216,6 +216,11 @@ TEST(NotFinite, NamesEachFieldOfGravityAndErrors) {
       {"pne_aligned_deg", [](E& e, double x) { e.pne_aligned_deg = x; }},
       {"pde_m", [](E& e, double x) { e.pde_m = x; }},
       {"pne_bound_deg", [](E& e, double x) { e.pne_bound_deg = x; }},
+      {"tracks_px", [](E& e, double x) { e.tracks_px = x; }},
+      {"pne_sigmas", [](E& e, double x) { e.pne_sigmas = x; }},
+      {"scale_ratio", [](E& e, double x) { e.scale_ratio = x; }},
+      {"path_error_m", [](E& e, double x) { e.path_error_m = x; }},
+      {"path_error_percent", [](E& e, double x) { e.path_error_percent = x; }},
       {"scale_error_percent", [](E& e, double x) { e.scale_error_percent = x; }},
       {"gravity_error_deg", [](E& e, double x) { e.gravity_error_deg = x; }}};
   for (const double bad : kBad) {

@@ -1,7 +1,10 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
+#include "engine/diagnosis/checks.h"
 #include "engine/diagnosis/diagnosis.h"
+#include "engine/diagnosis/focal_change.h"
 #include "engine/diagnosis/moving_objects.h"
+#include "engine/methods/initializers.h"
 #include "tests/engine/simulated_window.h"
 
 #include <algorithm>
@@ -10,6 +13,7 @@
 #include <iterator>
 #include <numeric>
 #include <random>
+#include <utility>
 #include <vector>
 
 #include <Eigen/Geometry>
@@ -61,6 +65,9 @@ TEST(StaticTracksFinding, IsANoteOnACarrierInView) {
   EXPECT_NE(findings[0].sentence.find(
                 fmt::format("{} of 150 tracks do not move", marked.window.static_tracks.size())),
             std::string::npos);
+  EXPECT_NE(findings[0].sentence.find("carrier, or dirt; they"), std::string::npos);
+  EXPECT_EQ(findings[0].sentence.find("move by 0 px"), std::string::npos);
+  EXPECT_EQ(findings[0].advice, "");
 }
 
 TEST(StaticTracksFinding, IsWeakIfTheyAreTheMajority) {
@@ -68,6 +75,7 @@ TEST(StaticTracksFinding, IsWeakIfTheyAreTheMajority) {
   ASSERT_EQ(findings.size(), 1U);
   EXPECT_EQ(findings[0].level, Level::weak);
   EXPECT_TRUE(findings[0].command.starts_with("mask not ")) << findings[0].command;
+  EXPECT_EQ(findings[0].advice, "if the camera moves, mask them");
 }
 
 TEST(StaticTracksFinding, IsWeakIfTheySurroundTheOthers) {
@@ -122,6 +130,14 @@ TEST(MovingObjects, AreFoundInTheirRegion) {
     const auto found = moving_objects(simulation.window, true_result(simulation));
     EXPECT_TRUE(std::ranges::includes(object, found));
     EXPECT_GE(found.size(), 0.7 * object.size()) << int(motion);
+    std::vector<std::int64_t> ids(simulation.window.track_count());
+    std::iota(ids.begin(), ids.end(), 100);
+    const Initialization result = true_result(simulation);
+    const auto findings =
+        check::moving_objects({.window = &simulation.window, .ids = ids, .result = &result});
+    ASSERT_EQ(findings.size(), 1U);
+    EXPECT_EQ(findings[0].level, Level::note);
+    EXPECT_EQ(findings[0].tracks.front(), 100 + found.front());
   }
 }
 
@@ -148,6 +164,74 @@ TEST(MovingObjects, AreNotPointsOffThePlane) {
     const Simulation simulation = simulate(options);
     EXPECT_EQ(moving_objects(simulation.window, true_result(simulation)), std::vector<int>{});
   }
+}
+
+/// Scales the points around the principal point as a focal length that grows with time does.
+void zoom(Window& window, double share) {
+  const Vector2d center = window.K.topRightCorner<2, 1>();
+  for (int i = 0; i < window.frame_count(); ++i) {
+    const double scale = 1 + share * i / (window.frame_count() - 1.0);
+    window.points_px[i] = (scale * (window.points_px[i].colwise() - center)).colwise() + center;
+  }
+}
+
+void take_lens_as_exact(Window& window) {
+  window.lens_moves_px = {window.points_px};
+  for (auto& moves_px : window.lens_moves_px[0]) moves_px.setZero();
+}
+
+std::vector<Finding> findings_on_focal_length(const Window& window, const Initialization& result) {
+  return check::changing_focal_length({.window = &window, .result = &result});
+}
+
+TEST(ChangingFocalLength, IsFoundInMostWindowsWithSidewaysAndUpDownMotion) {
+  int windows = 0, found_in = 0;
+  for (const Motion motion : {Motion::wander, Motion::up_down, Motion::arc})
+    for (const std::uint64_t seed : {1, 2, 3, 4})
+      for (const double share : {-0.01, 0.0, 0.01}) {
+        SCOPED_TRACE(fmt::format("motion {}, seed {}, {}", int(motion), seed, share));
+        Simulation simulation = simulate(noisy(motion, seed, 0.1));
+        take_lens_as_exact(simulation.window);
+        zoom(simulation.window, share);
+        simulation.window.rotations = RotationModel::free;
+        simulation = with_fitted_homographies(std::move(simulation));
+        const Initialization result =
+            initialize_gpo_joint(simulation.window, {.shutter = Shutter::global}, {});
+        ASSERT_TRUE(result.ok) << result.reason;
+        const auto change = focal_change(simulation.window, result);
+        ASSERT_TRUE(change);
+        EXPECT_NEAR(change->share, share, 4 * change->sigma_share);
+        const auto found = findings_on_focal_length(simulation.window, result);
+        if (share == 0) {
+          EXPECT_TRUE(found.empty());
+          continue;
+        }
+        ++windows;
+        if (found.empty()) continue;
+        ++found_in;
+        EXPECT_EQ(found[0].level, Level::weak);
+        EXPECT_TRUE(found[0].sentence.starts_with(
+            fmt::format("the focal length changes by {}", share > 0 ? '+' : '-')));
+      }
+  EXPECT_GE(found_in, 0.75 * windows);
+}
+
+TEST(ChangingFocalLength, IsLessCertainWithATypicalLensAndAnEstimatedRowDelay) {
+  Simulation simulation = simulate(noisy(Motion::wander, 1, 0.1));
+  Window exact = simulation.window;
+  take_lens_as_exact(exact);
+  Initialization result = true_result(simulation);
+  const double sigma = focal_change(exact, result)->sigma_share;
+  EXPECT_GT(focal_change(simulation.window, result)->sigma_share, 1.05 * sigma);
+  result.row_delay_s = 0;
+  result.uncertainty = Uncertainty{.rotations = RotationModel::free};
+  EXPECT_GT(focal_change(exact, result)->sigma_share, 1.05 * sigma);
+}
+
+TEST(ChangingFocalLength, IsUnknownWithoutAResult) {
+  const Simulation simulation = simulate(noisy(Motion::orbit, 1));
+  EXPECT_FALSE(focal_change(simulation.window, failed("no convergence")));
+  EXPECT_TRUE(findings_on_focal_length(simulation.window, failed("no convergence")).empty());
 }
 
 }  // namespace

@@ -40,6 +40,8 @@ TEST(TruthOfAnotherPlaneCheck, NamesThePlaneThatTheTruthDescribes) {
   EXPECT_EQ(other[0].key, "truth-of-another-plane");
   EXPECT_EQ(other[0].level, Level::note);
   EXPECT_EQ(other[0].command, "main-plane 3");
+  EXPECT_EQ(other[0].sentence,
+            "the ground truth describes plane 3 of the window, and plane 1 leads: no PNE and PDE");
   evaluation.plane = std::nullopt;
   const auto none = found({.window = &window, .evaluation = &evaluation});
   ASSERT_THAT(none, SizeIs(1));
@@ -62,6 +64,10 @@ TEST(TruthContradictsCheck, StatesTheErrorsBeyondTheirUncertainty) {
   EXPECT_EQ(off[0].sentence,
             "the normal is 14 deg off the ground truth (48 sigma), the path 12 % of its length, "
             "the tracks 23 px");
+  EXPECT_EQ(off[0].advice, "check tracks, camera and ground truth");
+  evaluation.tracks_px = 0.5;
+  EXPECT_EQ(found({.window = &window, .evaluation = &evaluation})[0].advice,
+            "compare other methods and rotations, the tracks fit the truth");
 }
 
 }  // namespace

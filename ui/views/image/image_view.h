@@ -107,7 +107,8 @@ std::optional<Vector3d> point_on_plane(const Plane& plane, const ScenePixel& at)
 /// Returns the nearest cube at a pixel of the scene; nullopt if there is none.
 std::optional<CubeAnchor> cube_at(const Inspection& inspection, double side, const ScenePixel& at);
 
-/// Draws rings around the tracks in the image, and their paths through the window.
+/// Draws rings around the tracks in the image, and their paths through the window. If a finding
+/// names repeated texture, also arrows in the reference frame to the places that look alike.
 void draw_highlight_in_image(const Area& area,
                              const FrameView& view,
                              const ImageMapping& mapping,

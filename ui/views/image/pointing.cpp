@@ -6,7 +6,9 @@
 #include "ui/views/image/image_view.h"
 
 #include <algorithm>
+#include <array>
 #include <limits>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -45,6 +47,21 @@ void draw_path(
   const float s = overlay_scale();
   list.AddPolyline(points.data(), count, imgui_color(Role::background, 0.6 * alpha), 0, 4.2F * s);
   list.AddPolyline(points.data(), count, imgui_color(Role::selected, alpha), 0, 2 * s);
+}
+
+/// Draws an arrow from a track to the place that looks alike.
+void draw_second_match(ImDrawList& list, const Vector2d& from, const Vector2d& to) {
+  const double s = overlay_scale(), length = (to - from).norm();
+  if (!(length > 0)) return;
+  const Vector2d back = (from - to) / length * std::min(6 * s, length / 2);
+  const Vector2d aside = Vector2d(-back.y(), back.x()) / 2;
+  const std::array head = {to_imgui(to + back + aside), to_imgui(to), to_imgui(to + back - aside)};
+  for (const auto& [color, width] :
+       {std::pair{imgui_color(Role::background, 0.6), 3.0}, {imgui_color(Role::warning), 1.2}}) {
+    const auto thick = static_cast<float>(width * s);
+    list.AddLine(to_imgui(from), to_imgui(to), color, thick);
+    list.AddPolyline(head.data(), static_cast<int>(head.size()), color, 0, thick);
+  }
 }
 
 /// Draws a line with its length beside it.
@@ -227,6 +244,14 @@ void draw_highlight_in_image(const Area& area,
   };
   for (const int column : highlight.picked)
     ring(column, column == highlight.focus ? 10 : 8, Role::selected);
+  if (frame == 0 && find_finding(view.inspection.findings, "repeated-texture") != nullptr) {
+    for (const int column : highlight.picked) {
+      const Vector2d from_px = tracks.raw_px[0].col(column);
+      draw_second_match(list,
+                        to_screen(mapping, from_px),
+                        to_screen(mapping, from_px + tracks.repetition->period_px.col(column)));
+    }
+  }
   if (highlight.hovered) ring(*highlight.hovered, 11, Role::pointed_at);
   list.PopClipRect();
 }
