@@ -10,7 +10,7 @@
 namespace gpo::test {
 namespace {
 
-constexpr double kFrame_s = 1.0 / 30;
+constexpr double kFrameInterval_s = 1.0 / 30;
 
 std::int64_t ns(double seconds) { return std::llround(1e9 * seconds); }
 
@@ -46,14 +46,14 @@ std::pair<ResultPoses, ClockReference> made(const Clocks& clocks, std::uint64_t 
   Eigen::Matrix3d drift = Eigen::Matrix3d::Identity();
   Eigen::Matrix3d before = pose(0).R_wc;
   for (int i = 0; i < clocks.frames; ++i) {
-    const double t = i * kFrame_s;
+    const double t = i * kFrameInterval_s;
     Pose one = pose(t + 0.007) * inverse(clocks.T_posed_camera);
     one.R_wc = one.R_wc * so3_exp(noise(clocks.sigma_rad, random));
     result.timestamps_ns.push_back(ns(t + 0.007 - clocks.offset_s));
     result.poses.push_back(one);
     const Eigen::Matrix3d R = pose(t).R_wc;
     drift = drift * (before.transpose() * R) *
-            so3_exp(Eigen::Vector3d(clocks.bias_rad_s, 0, -clocks.bias_rad_s) * kFrame_s);
+            so3_exp(Eigen::Vector3d(clocks.bias_rad_s, 0, -clocks.bias_rad_s) * kFrameInterval_s);
     before = R;
     reference.timestamps_ns.push_back(ns(t));
     reference.R_wc.push_back(drift * so3_exp(noise(clocks.sigma_rad, random)));

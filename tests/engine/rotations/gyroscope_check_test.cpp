@@ -14,7 +14,6 @@ namespace gpo::test {
 namespace {
 
 using Eigen::Matrix3d, Eigen::Vector3d, testing::HasSubstr, testing::StartsWith;
-using enum GyroscopeMisfit;
 
 Vector3d camera_rate_at(double t_s) {
   return {0.5 * std::sin(5.1 * t_s) + 0.2 * std::cos(13 * t_s),
@@ -75,8 +74,8 @@ TEST(RateIntegral, CoversTheFirstAndTheLastSample) {
 }
 
 TEST(GyroscopeCheck, AcceptsAGyroscopeThatFits) {
-  EXPECT_EQ(check(images(), gyroscope(0, Matrix3d::Identity())).misfit, none);
-  EXPECT_EQ(check(images(), gyroscope(0.01, Matrix3d::Identity())).misfit, none);
+  EXPECT_EQ(check(images(), gyroscope(0, Matrix3d::Identity())).misfit, GyroscopeMisfit::none);
+  EXPECT_EQ(check(images(), gyroscope(0.01, Matrix3d::Identity())).misfit, GyroscopeMisfit::none);
 }
 
 TEST(GyroscopeCheck, MeasuresAClockThatIsOffByMoreThanHalfAFrame) {
@@ -108,14 +107,15 @@ TEST(GyroscopeCheck, NamesRatesThatAreTooLow) {
   EXPECT_THAT(sentence_of(half),
               testing::MatchesRegex("its rates are about 0.(49|50|51) of those.*"));
   EXPECT_FALSE(half.late_s);
-  EXPECT_EQ(check(images(), with_rates(0.9)).misfit, none);
+  EXPECT_EQ(check(images(), with_rates(0.9)).misfit, GyroscopeMisfit::none);
 }
 
 TEST(GyroscopeCheck, IgnoresAGyroscopeAtRestIfTheImagesAreUncertainOrAtRest) {
   constexpr double kUnknown_rad = 0.05;
   const ImageRotations window = images();
-  EXPECT_EQ(check_gyroscope_against({&window, 1}, with_rates(0), kUnknown_rad).misfit, none);
-  EXPECT_EQ(check(images(0.02), with_rates(0)).misfit, none);
+  EXPECT_EQ(check_gyroscope_against({&window, 1}, with_rates(0), kUnknown_rad).misfit,
+            GyroscopeMisfit::none);
+  EXPECT_EQ(check(images(0.02), with_rates(0)).misfit, GyroscopeMisfit::none);
 }
 
 TEST(GyroscopeCheck, NamesStabilizedImagesAndUnrelatedRates) {
@@ -145,7 +145,7 @@ TEST(GyroscopeCheck, NamesUnits) {
   for (const int frames : {10, 30})
     for (const auto& [factor, name] : units) {
       const GyroscopeCheck found = check(images(1, frames), with_rates(factor));
-      EXPECT_EQ(found.misfit, unit) << name << frames;
+      EXPECT_EQ(found.misfit, GyroscopeMisfit::unit) << name << frames;
       EXPECT_THAT(sentence_of(found), HasSubstr(name)) << frames;
       EXPECT_NEAR(found.rad_s_per_unit * factor, 1, 1e-6);
     }
@@ -177,7 +177,7 @@ TEST(GyroscopeCheck, AdviceMendsTheFileOfRates) {
   Gyroscope made = with_axes(Vector3d(1, -1, 1).asDiagonal(), with_rates(57.29578));
   made.file = "imu0/data.csv";
   const GyroscopeCheck found = check(images(), made);
-  EXPECT_EQ(found.misfit, mirrored);
+  EXPECT_EQ(found.misfit, GyroscopeMisfit::mirrored);
   EXPECT_EQ(advice_of(found, made),
             "correct the rates: awk -F, -v OFS=, '/^[0-9]/ { for (i = 2; i < 5; ++i) $i *= "
             "0.0174532925; x = $2; y = $3; z = $4; $3 = -y; } 1' 'imu0/data.csv' > rates.csv");
@@ -188,7 +188,7 @@ TEST(GyroscopeCheck, AdviceMendsTheFileOfRates) {
 TEST(GyroscopeCheck, NamesAnInvertedExtrinsicRotation) {
   Gyroscope inverse = gyroscope(0, so3_exp({0.5, -1, 2}));
   inverse.R_gyro_camera = so3_exp({-0.5, 1, -2});
-  EXPECT_EQ(check(images(), inverse).misfit, inverted);
+  EXPECT_EQ(check(images(), inverse).misfit, GyroscopeMisfit::inverted);
 }
 
 }  // namespace
