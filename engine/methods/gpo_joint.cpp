@@ -224,6 +224,19 @@ Window with_clock(Window window, const MethodOptions& options) {
   return window;
 }
 
+/// Returns the bend of the surface, which the lens residual of the joint model would explain.
+std::optional<double> bend_beside(const Window& window,
+                                  const Fit& fit,
+                                  const PlaneMotion& motion,
+                                  double sigma_px) {
+  Window bent = window;
+  if (fit.row_delay_s != 0)
+    bent = without_rolling_shutter(window, motion, fit.rotations.model, {fit.row_delay_s});
+  PlaneObservations observations = plane_observations(bent, numbers_of(motion.others));
+  copy_weights(fit.observations, observations);
+  return bend_sigma_deg({bent, observations, motion}, sigma_px);
+}
+
 double sigma_px_of(const Window& window) { return homography_error_px(window) / kMedianOfRayleigh; }
 
 }  // namespace
@@ -296,7 +309,7 @@ Initialization initialize_gpo_joint(const Window& given,
             : uncertainty_of({fit.window, fit.observations, motion}, fit.rotations.model);
   if (joint)
     result.uncertainty->bend_sigma_deg =
-        bend_sigma_deg({fit.window, fit.observations, motion}, result.uncertainty->sigma_px);
+        bend_beside(window, fit, motion, result.uncertainty->sigma_px);
   set_plane_uncertainties(result);
   if (window.rotations == RotationModel::bias) result.bias_rad_s = bias_rad_s;
   if (gyro_unknowns(window, fit.rotations.model) > 3)

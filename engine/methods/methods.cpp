@@ -147,7 +147,7 @@ Initialization with_uncertainty(const Method& method, const Window& window, Init
     uncertainty = uncertainty_by_tracks(*method.rotations, window, result);
   else if (uncertainty)
     uncertainty->own = true;
-  if (uncertainty) {
+  if (uncertainty && !uncertainty->has_size) {
     const bool known = result.own_noise && !result.own_noise->unstable;
     uncertainty = with_size(
         std::move(*uncertainty), window, result.plane, known ? result.own_noise : std::nullopt);

@@ -81,6 +81,7 @@ struct Uncertainty {
   std::optional<double> typical_lens_sigma_deg;
   TypicalLensMoves typical_lens_moves;  ///< empty if the calibration has standard deviations
   bool includes_typical_lens = false;   ///< true after `add_typical_lens`
+  bool has_size = false;                ///< true after `with_size`
   std::vector<Eigen::Matrix3d> center_covariances;  ///< for p_wc, one per frame; the first is zero
   /// Contribution of the tracks' noise and neighbors, given the rotations that the method holds.
   NoiseSpread noise;

@@ -272,6 +272,19 @@ void Model::differentiate(const Prediction& p,
 }
 
 // Observations of one plane in one frame have the same unknowns: one product serves them all.
+/// Adds J J^T to the lower triangle of A, over the unknowns of `columns`.
+static void add_self_product(const Panels& J, const std::vector<int>& columns, MatrixXd& A) {
+  const auto width = static_cast<Index>(columns.size());
+  MatrixXd minus_JJ = MatrixXd::Zero(width, width);
+  subtract_self_product(J, minus_JJ);
+  for (Index a = 0; a < width; ++a) {
+    for (Index b = a; b < width; ++b) {
+      const auto [column, row] = std::minmax(columns[a], columns[b]);
+      A(row, column) -= minus_JJ(b, a);
+    }
+  }
+}
+
 int Model::add_group(const Shared& shared,
                      const Group& group,
                      std::span<const Prediction> predictions,
@@ -326,14 +339,7 @@ int Model::add_group(const Shared& shared,
       if (by_track) all.by_track(columns[c], j) += gradient;
     }
   }
-  MatrixXd minus_JJ = MatrixXd::Zero(width, width);
-  subtract_self_product(J, minus_JJ);
-  for (Index a = 0; a < width; ++a) {
-    for (Index b = a; b < width; ++b) {
-      const auto [column, row] = std::minmax(columns[a], columns[b]);
-      all.A(row, column) -= minus_JJ(b, a);
-    }
-  }
+  add_self_product(J, columns, all.A);
   return weighted;
 }
 

@@ -24,8 +24,8 @@ constexpr int kMostIterations = 20;
 constexpr int kRestartIterations = 3;
 /// Then the velocities stay, because two smoothings may take turns.
 constexpr int kVelocityIterations = 5;
-/// Length of the last step over all unknowns, in their standard deviations.
-constexpr double kSettledSigmas = 0.01;
+/// Root mean square of the last step over all unknowns, in their standard deviations.
+constexpr double kSettledSigmas = 0.003;
 /// The same of a solution: the noise and the weights that are estimated along with it never quite
 /// settle.
 constexpr double kNearlySettledSigmas = 0.1;
@@ -55,7 +55,7 @@ struct Iteration {
   Normals normals = {};  ///< last linearization
   SolverReport solver = {};
   double last_step = 0;         ///< length over all unknowns, each in its unit
-  double last_step_sigmas = 0;  ///< the same in standard deviations of the unknowns
+  double last_step_sigmas = 0;  ///< its root mean square in standard deviations of the unknowns
 };
 
 void add_to_trace(const Priors& priors, Iteration& at) {
@@ -78,6 +78,12 @@ struct Checkpoint {
   Scales scales;
   double cost = 0;
 };
+
+void restore(Checkpoint before, Iteration& at) {
+  at.state = std::move(before.state);
+  at.predictions = std::move(before.predictions);
+  at.scales = before.scales;
+}
 
 /// Relaxation by the ratio of consecutive steps (Aitken): reweighted steps may overshoot again and
 /// again, or be too short, along a direction that the window hardly determines. The ratio is that
@@ -121,9 +127,7 @@ bool converge(const Model& model, Iteration& at) {
     priors = model.priors(at.state, at.scales, std::move(priors));
     const double cost = normals.cost + priors.cost;
     if (before && !(normals.in_front && cost <= kMostRise * before->cost)) {
-      at.state = std::move(before->state);
-      at.predictions = std::move(before->predictions);
-      at.scales = before->scales;
+      restore(std::move(*before), at);
       before.reset();
       curvature = Curvature::of_weights;
       newton = false;
@@ -148,7 +152,8 @@ bool converge(const Model& model, Iteration& at) {
       noise = model.path_noise(normals, at.scales);
       relaxed = relaxation.next(x, gradient, H);
     }
-    const double step_sigmas = std::sqrt(2 * decrease) / at.scales.sigma_px;
+    const double step_sigmas =
+        std::sqrt(2 * decrease / static_cast<double>(x.size())) / at.scales.sigma_px;
     at.state = model.moved(at.state, relaxed * x, normals);
     if (k < kVelocityIterations) model.update_velocities(at.state, noise);
     model.predict(at.state, at.predictions);

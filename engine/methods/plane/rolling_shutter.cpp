@@ -124,12 +124,9 @@ Window without_lens_residual(Window window, const LensResidual& residual) {
 }
 
 Window as_seen_at_time_stamps(const Window& window, const Initialization& result) {
-  if (!result.ok) return window;
-  const Window seen =
-      result.lens_residual ? without_lens_residual(window, *result.lens_residual) : window;
-  if (!result.row_delay_s) return seen;
+  if (!result.ok || !result.row_delay_s) return window;
   return without_rolling_shutter(
-      seen, motion_of(result), rotations_of(seen, result), {*result.row_delay_s});
+      window, motion_of(result), rotations_of(window, result), {*result.row_delay_s});
 }
 
 std::vector<RowMotion> row_motions(const Window& window, const Initialization& result) {

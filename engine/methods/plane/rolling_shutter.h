@@ -35,8 +35,8 @@ Window without_rolling_shutter(const Window& window,
 /// Returns the window with the points where a lens without the residual would see them.
 Window without_lens_residual(Window window, const LensResidual& residual);
 
-/// Returns the window as the cameras of a result see it: its points without the result's lens
-/// residual, where they were at the time stamps by its row delay.
+/// Returns the window with the points where they were at the time stamps by the result's row delay.
+/// They keep the lens residual, because an uneven surface looks like one.
 Window as_seen_at_time_stamps(const Window& window, const Initialization& result);
 
 /// Returns the motion of a result's cameras around each frame.

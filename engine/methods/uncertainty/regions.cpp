@@ -238,6 +238,7 @@ Uncertainty with_size(Uncertainty u,
   set_normal_covariance(N * normal * N.transpose(), u);
   u.noise.normal = size * shape;
   u.own = u.own || by_regions;
+  u.has_size = true;
   return u;
 }
 
