@@ -105,7 +105,9 @@ std::optional<Initialization> pulled(const Window& window,
   lower_covariances(rows, with_poses * pull.information * with_poses.transpose(), moved);
   move(window, rows, -with_poses * pull.gradient, moved);
   set_plane_uncertainties(moved);
-  moved = with_map_points(as_seen_at_time_stamps(window, moved), std::move(moved));
+  Window seen = as_seen_at_time_stamps(window, moved);
+  if (moved.lens_residual) seen = without_lens_residual(std::move(seen), *moved.lens_residual);
+  moved = with_map_points(seen, std::move(moved));
   return moved.ok ? std::optional(std::move(moved)) : std::nullopt;
 }
 
