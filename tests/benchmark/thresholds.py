@@ -17,8 +17,8 @@ WINDOWS = {"euroc-room": (0, 40, 5, 20), "chessboard-dark": (0, 280, 20, 20),
            "postcard": (0, 140, 20, 20), "cards-tracks": (1, 301, 50, 15),
            "phone-street": (0, 80, 20, 20)}
 TUNING = {"euroc-room", "chessboard-floor"}
-# engine/diagnosis/window_evidence.cpp and .h
-VERDICT = {"kDegenerateRotationToNoise": 1.3, "kDegenerateSigma_deg": 10.0,
+# engine/diagnosis/limits.h and normal_checks.cpp
+VERDICT = {"kDegenerateRotationToNoise": 1.26, "kDegenerateSigma_deg": 10.0,
            "kDegenerateTranslation": 0.015, "kReadyTranslation": 0.06, "kWeakSigma_deg": 0.5}
 
 
@@ -31,7 +31,7 @@ def result(program, folder, window, *more):
 
 
 def judged(verdict, k):
-    """Repeats `judged` of window_evidence.cpp; other reasons for a failure stay."""
+    """Repeats `judged` of normal_checks.cpp; other reasons for a failure stay."""
     numbers = [verdict.get(x) for x in ("rotation_rms_px", "noise_px", "normal_sigma_deg",
                                         "largest_translation")]
     if None in numbers:
