@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/diagnosis/moving_objects.h"
 
+#include "engine/diagnosis/window_evidence.h"
 #include "engine/geometry/homography.h"
 #include "engine/geometry/pose.h"
 

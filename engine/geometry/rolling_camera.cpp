@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include <Eigen/Geometry>
 #include <Eigen/LU>
 
 namespace gpo {

@@ -214,7 +214,9 @@ std::optional<Solution> solve(const Window& window,
   linearize(with_lens, Curvature::of_weights, at);
   find_lens_residual(with_lens, at.state, at.normals, at.scales);
   if (at.scales.lens_px > 0 && !converge(with_lens, at)) return std::nullopt;
-  if (!options.uncertainty) return Solution{.motion = at.state.motion, .solver = at.solver};
+  if (!options.uncertainty)
+    return Solution{
+        .motion = at.state.motion, .solver = at.solver, .scales = at.scales, .uncertainty = {}};
   unknown.lens_parameters = true;
   unknown.velocity = unknown_velocity(at, std::ssize(model.tracks()), all);
   const Model whole = model.with(unknown);
