@@ -413,10 +413,14 @@ bool add_evaluation(Inspection& inspection) {
                                                          options.seed,
                                                          options.lens));
   const bool of_main_plane = e.plane == inspection.window->leader && !inspection.truth_convention;
-  if (inspection.truth_convention)
-    e = {.alignment = e.alignment, .plane = inspection.window->leader};
-  else if (inspection.inertial)
+  if (inspection.truth_convention) {
+    const Alignment alignment = e.alignment;
+    e = Evaluation();
+    e.alignment = alignment;
+    e.plane = inspection.window->leader;
+  } else if (inspection.inertial) {
     compare(*inspection.inertial, *inspection.truth, e);
+  }
   if (const auto scale = known_scale(inspection); scale && e.scale)
     e.scale_error_percent = 100 * (*scale / *e.scale - 1);
   return of_main_plane;
